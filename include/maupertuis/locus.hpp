@@ -14,7 +14,7 @@ struct LocusPoint {
   Equilibrium equilibrium;
   StabilityReport stability;
   std::vector<std::complex<double>> eigenvalues;  // ascending by real, then imaginary part; driven: exponents
-  std::vector<double> passes;                     // driven: as of NeighboursInTime
+  std::vector<double> passes;                     // 0 where a verdict may change; driven: as of NeighboursInTime
 };
 
 /// What the neighbours of an equilibrium do when the parameter has a value, in the place of eigenvalues of coefficients
@@ -31,7 +31,8 @@ struct LocusBranch {
   std::vector<LocusPoint> points;
 };
 
-/// Where the verdict on a branch changes: between two values of the sweep, then by bisection to rounding.
+/// Where the verdict on a branch changes: between two values of the sweep, then to rounding by bisection, or where a
+/// multiplier passes 1 or −1.
 struct StabilityChange {
   double parameter = 0;
   std::size_t branch = 0;
@@ -58,13 +59,13 @@ struct Locus {
 };
 
 /// Equilibria and steady motions at equally spaced values of a parameter, joined to branches: at each value Newton's
-/// method begins at the points of the value before and at the starts of `find_equilibria`. What one step of the sweep
-/// carries further than a third of a typical size begins a branch of its own. Where a branch ends between two values it
-/// is followed to its fold, which is the last of its points then. The parameter has its own value again afterwards.
-/// Where t stands in the equations, `driven` judges the points, and between two values also where a
-/// multiplier comes nearest to 1 or −1: a point of a window narrower than the step that opens there is among those of
-/// the branch. Cost: that of a search, times `steps`. Throws Interrupted before there is a point. Precondition: steps
-/// ≥ 2.
+/// method begins at the points of the value before and at the starts of `find_equilibria`. Branches of rests are
+/// followed along their curves to folds, their last points then, and beyond: the other arm is a branch too. Steady
+/// motions and members of families that a step carries further than a third of a typical size begin new ones. The
+/// parameter has its own value again afterwards. Where t stands in the equations, `driven` judges the points. Where a
+/// multiplier comes nearest to 1 or −1, or an eigenvalue to 0, a point of a window narrower than the step that opens
+/// there is among those of the branch. Cost: that of a search, times `steps`. Throws Interrupted before there is a
+/// point. Precondition: steps ≥ 2.
 Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
                       double to, std::size_t steps, const NeighboursAt& driven = {});
 
