@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace maupertuis {
 namespace {
@@ -52,14 +53,29 @@ class Teller {
  private:
   using Like = std::pair<Happening::Kind, std::string>;
 
+  /// [companions] the times of what happens to them, of each kind in order. What holds as the motion begins does so at
+  /// a time that is given: a companion, which begins a rounding aside, has it there, a moment later, or not at all.
+  std::vector<std::map<Like, std::vector<double>>> times_of_companions() const {
+    constexpr double moment = 1e-12;  // of the run
+    const double near = moment * std::abs(plan_.run.end - plan_.run.begin);
+    std::set<Like> begins;
+    for (const Happening& h : result_.happenings)
+      if (h.t == plan_.run.begin) begins.insert({h.kind, h.name});
+    std::vector<std::map<Like, std::vector<double>>> out(companions_.runs.size());
+    for (std::size_t r = 0; r < out.size(); ++r)
+      for (const Happening& other : companions_.runs[r].happenings) {
+        const Like like{other.kind, other.name};
+        if (!(begins.count(like) > 0 && std::abs(other.t - plan_.run.begin) <= near)) out[r][like].push_back(other.t);
+      }
+    return out;
+  }
+
   /// Times of events: by those of the companions, each by its count among its like.
   void tell_happenings() {
-    std::vector<std::map<Like, std::vector<double>>> times(companions_.runs.size());
-    for (std::size_t r = 0; r < times.size(); ++r)
-      for (const Happening& other : companions_.runs[r].happenings)
-        times[r][{other.kind, other.name}].push_back(other.t);
+    const auto times = times_of_companions();
     std::map<Like, std::size_t> counts;
     for (Happening& h : result_.happenings) {
+      if (h.t == plan_.run.begin) continue;
       const Like like{h.kind, h.name};
       const std::size_t count = counts[like]++;
       const double by_companions = error_of(h.t, [&](const CompanionRun& run) {

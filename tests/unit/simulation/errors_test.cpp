@@ -365,6 +365,14 @@ TEST_CASE("probes have errors of their own") {
   CHECK(probe.errors[1][0] < 2 * expected);
 }
 
+TEST_CASE("an event that holds as the motion begins does not count among those of the companions") {
+  const SimulationResult r =
+      run("system s\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 0.3, x' = 0.7\nrun 10\n"
+          "event e when (x - 0.3)*(x - 0.9) = 0 : record\n");
+  REQUIRE(r.happenings.size() == 4);
+  for (const Happening& h : r.happenings) CHECK(h.error < 1e-14);
+}
+
 TEST_CASE("an energy is known at times at which the state is lost") {
   const ModelText m(double_pendulum);
   Probe probe;

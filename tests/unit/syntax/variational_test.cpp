@@ -9,6 +9,7 @@ using maupertuis::syntax::test::shape;
 
 // The statements of variational problems: independent, path, constraint integral, and what is expected of paths.
 
+namespace variational_test {
 namespace {
 
 template <class Body>
@@ -178,3 +179,5 @@ TEST_CASE("golden: the tree of variational statements") {
         "expect path at\n  subject:\n    name y\n  time:\n    quantity m\n      number 1\n  value:\n    number 2\n  "
         "tolerance:\n    number 1\n");
 }
+
+}  // namespace variational_test
