@@ -64,10 +64,11 @@ class Kinks {
   /// Whether an event ends the step that is none at a kink. What it changes, an impact, decides where the motion goes
   /// from there: nothing is left open for the next step.
   bool ends_by_event(const MetRoots<T>& met);
-  /// Whether the step begins at a zero of an event, and comes to a switch before rounding tells it from there: what was
-  /// met at that zero is not met again, and the next step begins at it as well.
+  /// Whether the step begins at a zero of an event, and comes to a switch before rounding tells it from there, as where
+  /// two formulas have a kink at one place: the next step begins at that zero as well. What was met at it is not met
+  /// again, and what is open stays so.
   bool stays_at_zero(const Watched& event, const MetRoots<T>& met, const T& together) const {
-    return comes_to_switch(met) && met.x <= together && event.at_zero && !event.is_open;
+    return comes_to_switch(met) && met.x <= together && event.at_zero;
   }
   /// What happens at the switch that ends a step of length h is taken out of `met` and left open where the next step
   /// has to tell it. before: the events as the step began.

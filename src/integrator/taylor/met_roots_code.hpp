@@ -68,7 +68,7 @@ void Kinks<T>::stay_at_zeros(std::span<const Watched> before, const T& together,
   for (std::size_t event = 0; event < before.size(); ++event) {
     if (!stays_at_zero(before[event], met, together)) continue;
     met.forget(switches_ + event);
-    met.after[switches_ + event] = {0, true, before[event].order};
+    met.after[switches_ + event] = before[event].is_open ? before[event] : Watched{0, true, before[event].order};
   }
 }
 
