@@ -173,8 +173,8 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
   return true;
 }
 
-/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a switch, at
-/// which nothing else ends the step, is left open.
+/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a switch,
+/// at which nothing else ends the step, is left open.
 void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
   const std::size_t count = switches.size();
   const bool may_go_on = is_unread(out), at_switch = kinks_.ends_at_switch(out);

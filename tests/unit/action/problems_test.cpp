@@ -114,7 +114,7 @@ L = 1/2 x'^2 - 1/2 x^2
   CHECK(code_of_search(m, fixed_ends({0.4}, 0, {0.7}, pi)) == "E1204");
 }
 
-TEST_CASE("a straight line that passes the origin of polar coordinates at less than half a turn is a path, more is none") {
+TEST_CASE("a straight line past the origin of polar coordinates takes less than half a turn; with more there is none") {
   ModelText m("dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2)\n");
   for (const double angle : {3.0, 3.14}) {
     Diagnostics diagnostics;

@@ -500,7 +500,8 @@ TEST_CASE("an event whose formula changes at its own zero goes on by the formula
   check_instants("piecewise(x < -0.3 : (x + 0.3)^2, else : x + 0.3) = 0",
                  {c, 2 * half_turn - c, 2 * half_turn + c});
   check_instants("max(x + 0.3, -(x + 0.3)^2) = 0", {c, 2 * half_turn - c, 2 * half_turn + c});
-  check_instants("piecewise(x < -0.3 : sin(x + 0.3), else : (x + 0.3)^3) = 0", {c, 2 * half_turn - c, 2 * half_turn + c});
+  check_instants("piecewise(x < -0.3 : sin(x + 0.3), else : (x + 0.3)^3) = 0",
+                 {c, 2 * half_turn - c, 2 * half_turn + c});
 }
 
 TEST_CASE("sets at events that touch zero, beside one another") {
