@@ -90,8 +90,8 @@ template <class T>
 Watched left_open(std::int8_t side, const RootOf<T>& zero, const T& h);
 
 /// How a function leaves a zero at x = 0 whose order was told on the other side of a kink, where its formula was
-/// another one: (x + 1)² there may be x + 1 here. Nearer than ε^(1/order), where rounding may have left the zero, powers
-/// below those of this formula are rounding; beyond, the power that outweighs the others is the first.
+/// another one: (x + 1)² there may be x + 1 here. Nearer than ε^(1/order), where rounding may have left the zero,
+/// powers below those of this formula are rounding; beyond, the power that outweighs the others is the first.
 struct LeavesZero {
   std::int8_t side;
   std::uint8_t order;

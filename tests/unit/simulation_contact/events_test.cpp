@@ -497,8 +497,7 @@ TEST_CASE("an event whose formula changes at its own zero goes on by the formula
   // A double zero on one side, a simple one on the other.
   check_instants("piecewise(x < -0.3 : (x + 0.3)^2, else : x*(x + 0.3)) = 0",
                  {half_turn / 2, c, 2 * half_turn - c, 1.5 * half_turn, 2.5 * half_turn, 2 * half_turn + c});
-  check_instants("piecewise(x < -0.3 : (x + 0.3)^2, else : x + 0.3) = 0",
-                 {c, 2 * half_turn - c, 2 * half_turn + c});
+  check_instants("piecewise(x < -0.3 : (x + 0.3)^2, else : x + 0.3) = 0", {c, 2 * half_turn - c, 2 * half_turn + c});
   check_instants("max(x + 0.3, -(x + 0.3)^2) = 0", {c, 2 * half_turn - c, 2 * half_turn + c});
   check_instants("piecewise(x < -0.3 : sin(x + 0.3), else : (x + 0.3)^3) = 0",
                  {c, 2 * half_turn - c, 2 * half_turn + c});
