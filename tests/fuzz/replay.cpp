@@ -1,5 +1,6 @@
 // replay FILE|FOLDER...: feeds stored texts to the fuzz target, one after another, without libFuzzer: what the fuzzer
-// once found stays found. A text that ends the program, or takes longer than ten seconds, is named.
+// once found stays found. A text that ends the program, or takes more than ten seconds of the processor, is named.
+#include <sys/time.h>
 #include <unistd.h>
 #include <csignal>
 #include <cstdint>
@@ -17,11 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned seconds_for_one = 10;
-char current[4096];  // a handler of signals may read nothing that moves
+constexpr time_t seconds_for_one = 10;  // of the processor: beside other tests, clocks on the wall run faster
+char current[4096];                     // a handler of signals may read nothing that moves
 
 void name_the_text(int signal) {
-  const char* const words = signal == SIGALRM ? "\ntakes too long: " : "\nends the program: ";
+  const char* const words = signal == SIGPROF ? "\ntakes too long: " : "\nends the program: ";
   for (const char* const text : {words, static_cast<const char*>(current), "\n"})
     if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
   std::signal(signal, SIG_DFL);
@@ -36,21 +37,27 @@ std::vector<fs::path> texts(const fs::path& from) {
   return out;
 }
 
+/// 0: no longer.
+void end_after(time_t seconds) {
+  const itimerval timer{{0, 0}, {seconds, 0}};
+  setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
 bool feed(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return std::fprintf(stderr, "cannot be read: %s\n", path.c_str()), false;
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   std::snprintf(current, sizeof current, "%s", path.c_str());
-  alarm(seconds_for_one);
+  end_after(seconds_for_one);
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  alarm(0);
+  end_after(0);
   return true;
 }
 
 }  // namespace
 
 int main(int count, char** arguments) {
-  for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGALRM}) std::signal(signal, name_the_text);
+  for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGPROF}) std::signal(signal, name_the_text);
   std::size_t fed = 0;
   for (int i = 1; i < count; ++i)
     for (const fs::path& path : texts(arguments[i])) {
