@@ -1,3 +1,4 @@
+#include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/kinks.hpp"
 
 #include <maupertuis/modes.hpp>
