@@ -284,7 +284,8 @@ void expand_definitions(Model& model);
 /// expanded.
 void replace_momenta(Model& model);
 /// A root has no series where it vanishes: the condition `norm(P) = 0` becomes `norm(P)^2 = 0`, `acos(x) = 0` x = 1.
-/// Those that rise or fall stay as they are. After definitions, which may be roots, are expanded.
+/// Factors of a product lose theirs too. Conditions that rise or fall keep roots of what may be negative. After
+/// definitions, which may be roots, are expanded.
 void take_roots_off_conditions(Experiment& x);
 /// Calls `visit` on every expression of an experiment, and `starts` first on each list of values of a state.
 void visit_experiment(Experiment& x, const std::function<void(Expr&)>& visit,

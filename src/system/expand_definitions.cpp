@@ -137,20 +137,26 @@ void replace_momenta(Model& model) {
 
 namespace {
 
-/// An expression that vanishes where f does, and has a series there: g for g^r with r = 1/2, 3/2, …, g − 1 for acos g.
-Expr without_root(Expr f) {
-  if (f.is(maupertuis::Kind::Product) && f.size() == 2 && f[0].is_number()) return without_root(f[1]);
-  if (f.is(maupertuis::Kind::Acos)) return f[0] - Rational(1);
-  const Rational* exponent = f.is(maupertuis::Kind::Power) ? f[1].number_or_null() : nullptr;
-  return exponent && exponent->sign() > 0 && !exponent->is_integer() ? f[0] : f;
+/// g for g^r with r = 1/2, 3/2, …, which vanishes where g does; g − 1 for acos g. One that rises or falls stays so
+/// where g is never negative, as in |x|^(1/2).
+Expr without_root(Expr f, int direction) {
+  using maupertuis::Kind;
+  if (f.is(Kind::Product)) {
+    std::vector<Expr> factors;
+    for (std::size_t i = 0; i < f.size(); ++i) factors.push_back(without_root(f[i], direction));
+    return f.context().product(factors);
+  }
+  if (f.is(Kind::Acos) && direction == 0) return f[0] - Rational(1);
+  const Rational* exponent = f.is(Kind::Power) ? f[1].number_or_null() : nullptr;
+  const bool is_root = exponent && exponent->sign() > 0 && !exponent->is_integer();
+  return is_root && (direction == 0 || f[0].is(Kind::Abs)) ? f[0] : f;
 }
 
 }  // namespace
 
 void take_roots_off_conditions(Experiment& x) {
-  for (ModelEvent& event : x.events)
-    if (event.direction == 0) event.function = without_root(event.function);
-  if (x.until) x.until = without_root(x.until);
+  for (ModelEvent& event : x.events) event.function = without_root(event.function, event.direction);
+  if (x.until) x.until = without_root(x.until, 0);
 }
 
 void expand_definitions(Model& model) {

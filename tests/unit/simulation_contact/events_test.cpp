@@ -455,6 +455,12 @@ TEST_CASE("an event whose formula has a root, without a series where it vanishes
   check_instants("acos(x) = 0", {2 * half_turn});
   check_instants("sqrt(x) = 0", zeros);  // it has no value beyond
   check_instants("sqrt(x^2 + y^2) = 0", {});
+  // Factors of a product too, and |x|^r with a direction: there its root changes no sign.
+  check_instants("x*sqrt(abs(x)) = 0", zeros);
+  check_instants("sqrt(abs(x))*x = 0 falling", {zeros[0], zeros[2]});
+  check_instants("sign(x)*abs(x)^(1/2) = 0 rising", {zeros[1]});
+  check_instants("2 x^2*acos(x) = 0", {zeros[0], zeros[1], 2 * half_turn, zeros[2]});
+  check_instants("sqrt(x) = 0 rising", {});  // it has no value before
   check_instants("sqrt(x^2) = 0.5", {half_turn / 3, 2 * half_turn / 3, 4 * half_turn / 3, 5 * half_turn / 3,
                                      7 * half_turn / 3, 8 * half_turn / 3});
 }
