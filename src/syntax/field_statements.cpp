@@ -111,7 +111,8 @@ StatementBody StatementParser::boundary_statement() {
     fail_expected("a condition", "Write `boundary periodic` at the end of the field's line, behind its domain.");
   const bool all_sides = peek().kind == Token::Kind::Name && peek(1).is("=");
   if (!all_sides) {
-    boundary.side = used_name("left, right, bottom or top");
+    boundary.side = used_name("left, right, bottom or top",
+                              "Name the side of the domain: `boundary left : w = 0, w_x = 0`; without one, all sides.");
     expect(":", "the side of the boundary");
   }
   list([&] { boundary.conditions.push_back(boundary_condition()); });

@@ -187,13 +187,11 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     if (ends_step(event) || kinks_.stays_at_zero(events[event], out, together_)) continue;
     const std::size_t i = count + event;
     Watched& watched = out.after[i];
+    const auto is_at_end = [&](double x, double hidden) { return x + hidden >= out.x * (1 - together_) - together_; };
     bool is_told_at_end = false;
     const auto note_root = [&](double x, int direction, double hidden = 0, std::uint8_t order = 1) {
       out.passed.push_back({std::min(x, out.x), event, direction, hidden, order});
-      is_told_at_end = x + hidden >= out.x * (1 - together_) - together_;
-    };
-    const auto is_left_open = [&](const RootOf<double>& root) {
-      return leaves_open && root.x + root.hidden >= out.x * (1 - together_) - together_;
+      is_told_at_end = is_at_end(x, hidden);
     };
     if (begin == 0 && !roots_->is_clear(i)) {
       const double hidden = watched.hidden / std::abs(h);
@@ -204,7 +202,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
       if (roots_->lost()) return out.end_where_lost(0);
       if (!root) break;
-      if (is_left_open(*root)) {
+      if (leaves_open && is_at_end(root->x, root->hidden)) {
         watched = left_open(watched.side, *root, h);
         break;
       }

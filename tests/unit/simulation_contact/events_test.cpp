@@ -490,6 +490,16 @@ TEST_CASE("an event at the place where forces switch is met once at each passage
         {0, half_turn, 2 * half_turn, 3 * half_turn}, 10);
 }
 
+TEST_CASE("kinks of several events at one place do not take each other's certain digits") {
+  const auto r = run_text(
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1, x' = 1.3\n"
+      "event a when abs(x - 0.5) = 0 : record\nevent b when abs((x - 0.5)*(x + 0.3)) = 0 : record\n",
+      9);
+  CHECK(count(r, Happening::Kind::Event, "a") == 3);
+  CHECK(count(r, Happening::Kind::Event, "b") == 6);
+  for (const Happening& h : r.happenings) CHECK(h.error < 1e-13);
+}
+
 TEST_CASE("a double root within a function whose argument rounds is met once, at its place") {
   // x + 1 touches 0 at half a turn.
   for (const char* touch : {"log(2 + x) = 0", "tan(x + 1) = 0", "tanh(x + 1) = 0", "sinh(x + 1) = 0", "exp(x + 1) = 1",
