@@ -26,9 +26,10 @@ struct PreciseMode {
 };
 
 /// At a root of the rows at rest and of φ next to `at`, which binds every symbol, found in 100 digits too. Eigenvalues
-/// nearer than 10⁻²² of their size are one, where ∂R/∂q is singular nearer than 10⁻²² of the largest. Nothing where M
-/// is singular on the velocities that are left, where the steps to the root do not end below 10⁻⁴⁰ of `sizes` [n], or a
-/// value is none. Cost: all derivatives as formulas, O(n³) operations in 100 digits.
+/// nearer than 10⁻²² of their size are one; so are those nearer than 10⁻²² of the largest, where ∂R/∂q is singular on
+/// the displacements that are left. Nothing where M is singular on the velocities that are left, where the steps to the
+/// root do not end below 10⁻⁴⁰ of `sizes` [n], or a value is none. Cost: all derivatives as formulas, O(n³) operations
+/// in 100 digits.
 std::optional<std::vector<PreciseMode>> precise_modes(const RowsOfMotion& motion, const Bindings& at,
                                                       std::span<const double> sizes);
 

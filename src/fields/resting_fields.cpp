@@ -208,10 +208,6 @@ std::vector<Expr> start_of(const FieldEquations& equations) {
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 /// Whether an expression holds a derivative by the time.
 bool holds_motion(const FieldEquations& equations, Expr e) {
   const std::vector<Expr> symbols = symbols_of({&e, 1});

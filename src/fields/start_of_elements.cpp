@@ -35,6 +35,8 @@ namespace {
 using Side = BoundaryCondition::Side;
 using Kept = std::vector<std::optional<double>>;  // by degree of freedom
 
+constexpr double rounding_of_zero = 4e-16;  // of the size of a start: what sin π is beside 1
+
 double largest(const std::vector<double>& values) {
   double out = 0;
   for (const double v : values) out = std::max(out, std::abs(v));
@@ -43,11 +45,10 @@ double largest(const std::vector<double>& values) {
 
 /// At the points of the elements; sin π is rounding, which must not violate a contact that the field touches.
 std::vector<double> at_points(const WrittenStart& start, const ElementSpace& space) {
-  constexpr double rounding = 4e-16;
   std::vector<double> out;
   for (const ElementSpace::Point& p : space.points()) out.push_back(start.at(p.x));
   const double size = largest(out);
-  for (double& v : out) v = std::abs(v) <= rounding * size ? 0 : v;
+  for (double& v : out) v = std::abs(v) <= rounding_of_zero * size ? 0 : v;
   return out;
 }
 
@@ -67,11 +68,14 @@ std::vector<double> nearest(const ElementSpace& space, const std::vector<double>
     const auto& value = kept[static_cast<std::size_t>(j)];
     if (!value) continue;
     b -= m.col(j) * *value;
+    const double own = m(j, j);  // the pivots of slopes are small beside 1 where elements are short
     m.row(j).setZero(), m.col(j).setZero();
-    m(j, j) = 1, b(j) = *value;
+    m(j, j) = own, b(j) = own * *value;
   }
-  const Eigen::VectorXd c = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(m).solve(b);
-  return {c.data(), c.data() + c.size()};
+  const Eigen::VectorXd solution = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(m).solve(b);
+  std::vector<double> out(solution.data(), solution.data() + solution.size());
+  for (std::size_t j = 0; j < out.size(); ++j) out[j] = kept[j].value_or(out[j]);
+  return out;
 }
 
 /// The coefficients at the start: of nodes the values there, of other functions those nearest to the start.
@@ -123,37 +127,43 @@ std::vector<std::optional<double>> SemiDiscrete::held_at_ends(std::size_t a, int
 /// in its equation nothing runs.
 void SemiDiscrete::look_for_clashes(std::size_t a, int order, const WrittenStart& start, double size,
                                     const std::vector<std::optional<double>>& held) {
-  constexpr double rounding = 1e-9, inside = 1e-12;  // |x| has a slope beside its kink alone
+  constexpr double rounding = 1e-9;
+  constexpr double near = 1e-12, nearer = 1e-14, falls = 0.5;  // |x| has a slope beside its kink alone
   if (!moves(*equations_, equations_->varied[a])) return;
   const double whole = mesh_.borders.back() - mesh_.borders.front();
   const auto look = [&](bool right, int space, std::size_t dof, double largest_value) {
     if (!held[dof]) return;
-    const double end =
-        right ? mesh_.borders.back() - space * inside * whole : mesh_.borders.front() + space * inside * whole;
-    const double value = start.at(end, space);
-    if (std::abs(*held[dof] - value) > rounding * std::max(largest_value, std::abs(*held[dof])))
-      clashes_.push_back({a, space, order, right ? Side::Right : Side::Left, value, *held[dof]});
+    const auto beside = [&](double share) {
+      const double away = space * share * whole;
+      return start.at(right ? mesh_.borders.back() - away : mesh_.borders.front() + away, space);
+    };
+    const double value = beside(near), off = std::abs(*held[dof] - value);
+    if (off <= rounding * std::max(largest_value, std::abs(*held[dof]))) return;
+    // That of x^(3/2) falls to 0 at the end itself.
+    if (std::abs(*held[dof] - beside(nearer)) <= falls * off) return;
+    clashes_.push_back({a, space, order, right ? Side::Right : Side::Left, value, *held[dof]});
   };
+  const bool is_smooth = spaces_[a].kind() == ElementSpace::Kind::Smooth;
   double steepest = 0;
   for (const ElementSpace::Point& p : spaces_[a].points())
-    if (const double slope = std::abs(start.at(p.x, 1)); std::isfinite(slope)) steepest = std::max(steepest, slope);
+    if (const double slope = is_smooth ? std::abs(start.at(p.x, 1)) : 0; std::isfinite(slope))
+      steepest = std::max(steepest, slope);
   for (const bool right : {false, true}) {
     const std::size_t border = right ? mesh_.borders.size() - 1 : 0;
     look(right, 0, spaces_[a].value_at_border(border), size);
-    if (spaces_[a].kind() == ElementSpace::Kind::Smooth) look(right, 1, spaces_[a].slope_at_border(border), steepest);
+    if (is_smooth) look(right, 1, spaces_[a].slope_at_border(border), steepest);
   }
 }
 
 /// Values and slopes that bodies hold start as they are written, whatever the elements beside them can follow.
 void SemiDiscrete::keep_places(std::size_t a, const WrittenStart& start, double size,
                                std::vector<std::optional<double>>& kept) const {
-  constexpr double rounding = 4e-16;
   for (const PlaceCoordinate& p : equations_->model->attached) {
     if (p.moves || p.jet.field != equations_->varied[a]) continue;
     const std::size_t dof = dof_at(a, p);
     const double value = start.at(number(p.place), p.jet.space[0]);
     if (kept[dof] || !std::isfinite(value)) continue;
-    kept[dof] = p.jet.space[0] == 0 && std::abs(value) <= rounding * size ? 0 : value;
+    kept[dof] = p.jet.space[0] == 0 && std::abs(value) <= rounding_of_zero * size ? 0 : value;
   }
 }
 

@@ -20,7 +20,7 @@ void fill_randomly(FieldValues& w) {
 
 namespace {
 
-double mean_square_root(const FieldValues& x) {
+double root_mean_square(const FieldValues& x) {
   double sum = 0, count = 0;
   for (const auto& row : x) {
     count += static_cast<double>(row.size());
@@ -52,16 +52,16 @@ double largest_frequency(const FieldValues& u, FieldValues w, const Acceleration
   const double epsilon = 1e-7 * size;
   FieldValues moved = u, at_rest = u;
   accelerations(moved, at_rest);
-  double norm = mean_square_root(w), square = 0;
+  double norm = root_mean_square(w), omega_squared = 0;
   for (int round = 0; round < rounds && trouble.empty(); ++round) {
     interrupt.throw_if_asked();
     if (!(norm > 0)) return 0;
     move_along(moved, u, w, epsilon / norm);
     accelerations(moved, w);
     set_difference(w, at_rest, epsilon);
-    norm = square = mean_square_root(w);
+    norm = omega_squared = root_mean_square(w);
   }
-  return std::sqrt(square);
+  return std::sqrt(omega_squared);
 }
 
 bool invert_mass(std::vector<double> a, std::vector<double>& inverse, std::size_t n) {

@@ -26,6 +26,7 @@ void BranchFollower::set_parameter(double value) {
 }
 
 LocusPoint BranchFollower::judged(double value, const Equilibrium& x) {
+  if (equations_.parameter(parameter_) != value) set_parameter(value);
   if (in_time())
     if (auto neighbours = driven_(value, x)) {
       was_driven_ = true;
@@ -76,7 +77,7 @@ std::optional<Equilibrium> BranchFollower::near(const Equilibrium& guess) const 
 
 std::optional<Equilibrium> BranchFollower::continued(const std::vector<LocusPoint>& points, double to) {
   const LocusPoint& last = points.back();
-  if (!is_curve()) return in_steps(points, to);
+  if (in_time() || !is_followed(last.equilibrium)) return in_steps(points, to);
   if (is_regular(last)) {
     const BranchWalk walk = walk_from(last, to);
     if (walk.end == BranchWalk::End::Arrived && walk.folds.empty()) return settled(last.equilibrium, walk.last);
@@ -86,6 +87,7 @@ std::optional<Equilibrium> BranchFollower::continued(const std::vector<LocusPoin
   if (!there || is_regular(last)) return there;
   // From a singular point several ways may lead on: those on which it is a fold are branches of their own.
   const BranchWalk back = walk_from({to, *there, {}, {}, {}}, last.parameter);
+  set_parameter(to);
   return back.folds.empty() ? there : std::nullopt;
 }
 

@@ -26,12 +26,12 @@ class BranchFollower {
   /// Neighbours are judged over a period, and have been.
   bool in_time() const { return driven_ && !equations_.autonomous(); }
   bool was_driven() const { return was_driven_; }
-  bool is_curve() const { return !in_time(); }
   /// A member of a family, or a motion that keeps the momenta of the start, is no curve that one could follow.
   static bool is_followed(const Equilibrium& x) { return x.at_rest && x.family == 0; }
   /// One curve alone goes through it.
   static bool is_regular(const LocusPoint& x) { return x.stability.verdict != Stability::Undecided; }
 
+  /// An equilibrium at a value, which the parameter has from then on.
   LocusPoint judged(double value, const Equilibrium& x);
   /// Of typical sizes; infinite between a rest and a steady motion.
   double distance(const Equilibrium& x, const Equilibrium& y) const;

@@ -13,7 +13,7 @@ class FoldSearch {
   /// A branch that begins or ends between two values of the sweep, and out of no other one, turns back there. The arms
   /// beyond are branches too, also where no start led to them.
   void run() {
-    if (!follow_.is_curve()) return;
+    if (follow_.in_time()) return;
     constexpr std::size_t most_branches = 1000;
     for (std::size_t b = 0; b < std::min(most_branches, locus_.branches.size()); ++b)
       for (const bool front : {true, false}) {
@@ -92,7 +92,6 @@ class FoldSearch {
     return {place.value, x, {}};
   }
   LocusPoint judged_at(const LocusPoint& like, const RestAt& place) {
-    follow_.set_parameter(place.value);
     return follow_.judged(place.value, fold_at(like, place).equilibrium);
   }
 
@@ -119,7 +118,6 @@ class FoldSearch {
     if (std::find(fold.branches.begin(), fold.branches.end(), b) != fold.branches.end() || fold.branches.size() > 1)
       return;
     fold.branches.push_back(b);
-    follow_.set_parameter(fold.parameter);
     LocusPoint last = follow_.judged(fold.parameter, fold.equilibrium);
     last.stability = end.stability;
     auto& points = locus_.branches[b].points;

@@ -67,6 +67,7 @@ class WindowSearch {
     constexpr double short_way = 1.0 / 8, narrowest = 1e-10;  // of the step: there it is a parabola; there is none
     for (const LocusPoint* p : {&low, &high})
       if (p->passes.size() <= which || p->stability.verdict != middle.stability.verdict) return std::nullopt;
+    if (middle.passes[which] == 0) return std::nullopt;  // it passes here, or is 0 at all values
     const double side = std::copysign(1.0, middle.passes[which]);
     const auto off = [&](const LocusPoint& p) { return side * p.passes[which]; };
     if (!(off(middle) <= off(low) && off(middle) <= off(high))) return std::nullopt;

@@ -119,21 +119,31 @@ PreciseMatrix transposed(const PreciseMatrix& a) {
   return out;
 }
 
+/// A sum and the sum of the sizes of its terms, by which one sees what is left of terms that cancel.
+struct SumOfTerms {
+  Complex100 sum;
+  Real100 size = 0;
+  void add(const Complex100& factor, const SumOfTerms& term) {
+    if (size_of(factor) == 0 || term.size == 0) return;
+    sum += factor * term.sum;
+    size += size_of(factor) * term.size;
+  }
+};
+
 /// Aᵀ X B. What its terms leave where they cancel is 0: a stiff link that does not change its length holds nothing.
 PreciseMatrix projected(const PreciseMatrix& a, const PreciseMatrix& x, const PreciseMatrix& b) {
   static const Real100 rounding("1e-80");
   PreciseMatrix out(a.columns, b.columns);
-  for (std::size_t i = 0; i < a.columns; ++i)
-    for (std::size_t j = 0; j < b.columns; ++j) {
-      Real100 size = 0;
-      for (std::size_t k = 0; k < x.rows; ++k)
-        for (std::size_t l = 0; l < x.columns; ++l) {
-          const Complex100 term = a.at(k, i) * x.at(k, l) * b.at(l, j);
-          out.at(i, j) += term;
-          size += size_of(term);
-        }
-      if (size_of(out.at(i, j)) <= rounding * size) out.at(i, j) = 0;
+  for (std::size_t j = 0; j < b.columns; ++j) {
+    std::vector<SumOfTerms> xb(x.rows);
+    for (std::size_t k = 0; k < x.rows; ++k)
+      for (std::size_t l = 0; l < x.columns; ++l) xb[k].add(b.at(l, j), {x.at(k, l), size_of(x.at(k, l))});
+    for (std::size_t i = 0; i < a.columns; ++i) {
+      SumOfTerms entry;
+      for (std::size_t k = 0; k < a.rows; ++k) entry.add(a.at(k, i), xb[k]);
+      if (size_of(entry.sum) > rounding * entry.size) out.at(i, j) = entry.sum;
     }
+  }
   return out;
 }
 

@@ -56,6 +56,27 @@ TEST_CASE("a mass on a beam without mass starts where the start says, in whateve
   }
 }
 
+TEST_CASE("a short beam starts with the slopes of its start, which are small beside 1 in its elements") {
+  const ToldRun run = answers_of(
+      "field w(x) : number on x = 0 .. 1e-4 cells 2 order 5\nboundary left : w = 0, w_x = 0\n"
+      "density = -1e-12 w_xx^2\nT = 3/2 w(1e-4)'^2\nstart w = 5e6 x^2 (3e-4 - x)\n"
+      "expect w(1e-4) at 0 = 0 ± 9\nexpect w(5e-5) at 0 = 0 ± 9\nexpect w(5e-5) at 0.5 = 0 ± 9\n");
+  const double ω = std::sqrt(2.0), tip = 1e-5;
+  CHECK(run.values[0].value == doctest::Approx(tip).epsilon(1e-14));
+  CHECK(run.values[1].value == doctest::Approx(tip * 5 / 16).epsilon(1e-12));
+  CHECK(run.values[2].value == doctest::Approx(tip * 5 / 16 * std::cos(ω / 2)).epsilon(1e-11));
+  CHECK(run.codes == "");
+}
+
+TEST_CASE("a start that steepens like a power of less than two at a clamp does not clash with it") {
+  const ToldRun run = answers_of(
+      "field w(x) : number on x = 0 .. 1 cells 2 order 5\n"
+      "boundary left : w = 0, w_x = 0\ndensity = w_t^2 - w_xx^2\nT = 3/2 w(1)'^2\n"
+      "start w = 0.1 x^(3/2)\nexpect w(1) at 0 = 0 ± 9\n");
+  CHECK(run.values[0].value == 0.1);
+  CHECK(run.codes.find("W0646") == std::string::npos);
+}
+
 TEST_CASE("the inertia of a slope, and a coordinate that a light beam is tied to, start as written") {
   const ToldRun slope = answers_of(light_beam + "T = 1/2 w_x(1)'^2\nstart w = 0.1 sin(pi x), w' = 0.1 x\n" +
                                    "expect w_x(1) at 0 = 0 ± 9\nexpect w_x(1)' at 0 = 0 ± 9\n");

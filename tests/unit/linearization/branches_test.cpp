@@ -105,6 +105,22 @@ TEST_CASE("a pitchfork at a value of the sweep is where its branches begin") {
   }
 }
 
+TEST_CASE("each point of a branch is judged at its own parameter, next to a crossing too") {
+  for (const std::size_t steps : {20, 21, 11, 5}) {
+    CAPTURE(steps);
+    const Locus fork = sweep_of(particle("x^4/4 - a x^2/2"), "a", -1, 1, steps);
+    for (const LocusBranch& branch : fork.branches)
+      for (const LocusPoint& p : branch.points) {
+        const double x = p.equilibrium.point.q[0], stiffness = 3 * x * x - p.parameter;
+        CAPTURE(p.parameter);
+        CAPTURE(x);
+        REQUIRE(p.eigenvalues.size() == 2);
+        const std::complex<double> squared = p.eigenvalues[1] * p.eigenvalues[1];
+        CHECK(std::abs(squared + stiffness) <= 1e-12);
+      }
+  }
+}
+
 TEST_CASE("folds beside a stiff link have all their digits") {
   for (const std::size_t steps : {17, 18}) {
     const Locus link = sweep_of(
