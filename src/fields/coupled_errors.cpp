@@ -111,28 +111,41 @@ std::optional<CoupledRun> sharper_run(const SemiDiscrete& fine, const CoupledPro
   return mesh ? run_once(*mesh, p.questions, p.width, options, unheard) : std::nullopt;
 }
 
-/// What an answer feels of rounding beside its own size, as felt_rounding of fields without bodies; by the values and
-/// velocities of the elements at the end of the run.
+/// The largest |u| (|u'|) of a field in the states that a run is asked about, at its start and at its end.
+double largest_in(const SimulationResult& run, const SemiDiscrete& mesh, std::size_t varied_index, int by_time) {
+  std::vector<const State*> states{&run.start, &run.final};
+  for (const State& s : run.at) states.push_back(&s);
+  double out = 0;
+  for (const State* s : states)
+    if (!s->q.empty()) out = std::max(out, mesh.largest_value(varied_index, by_time, *s));
+  return out;
+}
+
+/// By how much a question changes with the value at a place, at the end of a run; 1 where that is not finite.
+double weight_of(const PlaceValue& place, const FieldQuestion& question, const SemiDiscrete& mesh, const State& end) {
+  Diagnostics unheard;
+  const Expr slope = mesh.discretised({differentiate(question.value, place.symbol), false, question.time}, unheard);
+  const double weight = slope ? std::abs(mesh.value_in(slope, end)) : 1;
+  return std::isfinite(weight) ? weight : 1;
+}
+
+/// What an answer feels of rounding beside its own size, as felt_rounding of fields without bodies.
 double felt_rounding(const CoupledRun& run, const SemiDiscrete& mesh, const FieldEquations& equations,
                      std::size_t answer, const FieldQuestion& question) {
   double out = std::abs(run.answers[answer]);
   if (question.total) return out;
   const FieldSystem& s = equations.system();
-  const auto largest = [](const std::vector<double>& all) {
-    double most = 0;
-    for (const double x : all) most = std::max(most, std::abs(x));
-    return most;
-  };
   double width = mesh.borders().back() - mesh.borders().front();
   for (std::size_t i = 1; i < mesh.borders().size(); ++i)
     width = std::min(width, mesh.borders()[i] - mesh.borders()[i - 1]);
   const std::vector<Expr> asked = symbols_of({&question.value, 1});
   for (const PlaceValue& place : equations.model->places) {
     if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
-    const Expr slope = differentiate(question.value, place.symbol);
     const FieldJet jet = *s.jet_of(place.jet);
-    const double weight = slope.is_number() ? std::abs(slope.number().to_double()) : 1;
-    out += weight * largest(jet.time > 0 ? run.result.final.v : run.result.final.q) *
+    const double weight = weight_of(place, question, mesh, run.result.final);
+    const std::size_t varied = equations.varied_index(jet.field);
+    if (varied == equations.varied.size()) continue;  // it is given
+    out += weight * largest_in(run.result, mesh, varied, jet.time > 0 ? 1 : 0) *
            std::pow(mesh.order() * mesh.order() / width, jet.order() - jet.time);
   }
   return out;

@@ -35,7 +35,8 @@ namespace {
 using Side = BoundaryCondition::Side;
 using Kept = std::vector<std::optional<double>>;  // by degree of freedom
 
-constexpr double rounding_of_zero = 4e-16;  // of the size of a start: what sin π is beside 1
+constexpr double places_of_element[] = {0, 0.25, 0.5, 0.75, 1};  // where fields are looked at
+constexpr double rounding_of_zero = 4e-16;                       // of the size of a start: what sin π is beside 1
 
 double largest(const std::vector<double>& values) {
   double out = 0;
@@ -68,11 +69,15 @@ std::vector<double> nearest(const ElementSpace& space, const std::vector<double>
     const auto& value = kept[static_cast<std::size_t>(j)];
     if (!value) continue;
     b -= m.col(j) * *value;
-    const double own = m(j, j);  // the pivots of slopes are small beside 1 where elements are short
+    const double own = m(j, j);
     m.row(j).setZero(), m.col(j).setZero();
     m(j, j) = own, b(j) = own * *value;
   }
-  const Eigen::VectorXd solution = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(m).solve(b);
+  // Slopes count as lengths of their elements do: without units of their own, pivots of short elements pass for zeros.
+  const Eigen::VectorXd unit = m.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = unit.asDiagonal() * m * unit.asDiagonal();
+  const Eigen::VectorXd solution = unit.asDiagonal() * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(scaled).solve(
+                                                           Eigen::VectorXd(unit.cwiseProduct(b)));
   std::vector<double> out(solution.data(), solution.data() + solution.size());
   for (std::size_t j = 0; j < out.size(); ++j) out[j] = kept[j].value_or(out[j]);
   return out;
@@ -200,10 +205,9 @@ std::vector<SemiDiscrete::MovedStart> SemiDiscrete::moved_starts(const State& be
 /// Where a field is farthest from what is written.
 SemiDiscrete::MovedStart SemiDiscrete::most_moved(std::size_t a, int order, const WrittenStart& start,
                                                   const State& begin) const {
-  constexpr double places[] = {0, 0.25, 0.5, 0.75, 1};  // of an element
   MovedStart out{a, order, 0, 0, 0};
   for (std::size_t e = 0; e < elements(); ++e)
-    for (const double part : places) {
+    for (const double part : places_of_element) {
       const double x = mesh_.borders[e] + part * (mesh_.borders[e + 1] - mesh_.borders[e]);
       const double written = start.at(x), found = value_in(value_at(a, order, 0, x), begin);
       if (std::abs(found - written) > std::abs(out.found - out.written)) out = {a, order, x, written, found};
@@ -211,14 +215,27 @@ SemiDiscrete::MovedStart SemiDiscrete::most_moved(std::size_t a, int order, cons
   return out;
 }
 
-double SemiDiscrete::value_in(Expr value, const State& state) const {
+double SemiDiscrete::value_in(Expr value, const State& state) const { return evaluate(value, bindings_at(state)); }
+
+double SemiDiscrete::largest_value(std::size_t a, int by_time, const State& state) const {
+  const Bindings at = bindings_at(state);
+  double out = 0;
+  for (std::size_t e = 0; e < elements(); ++e)
+    for (const double part : places_of_element) {
+      const double x = mesh_.borders[e] + part * (mesh_.borders[e + 1] - mesh_.borders[e]);
+      out = std::max(out, std::abs(evaluate(value_at(a, by_time, 0, x), at)));
+    }
+  return out;
+}
+
+Bindings SemiDiscrete::bindings_at(const State& state) const {
   Bindings at = numbers_;
   at[equations_->system().context->time()] = state.t;
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = model_.system.coordinates[i];
     at[c.q] = state.q[i], at[c.velocity] = state.v[i];
   }
-  return evaluate(value, at);
+  return at;
 }
 
 }  // namespace maupertuis
