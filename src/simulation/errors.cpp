@@ -1,6 +1,7 @@
 #include "simulation/errors.hpp"
 
 #include "simulation/lost_digits.hpp"
+#include "simulation/matched_times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,35 +54,49 @@ class Teller {
  private:
   using Like = std::pair<Happening::Kind, std::string>;
 
-  /// [companions] the times of what happens to them, of each kind in order. What holds as the motion begins does so at
-  /// a time that is given: a companion, which begins a rounding aside, has it there, a moment later, or not at all.
-  std::vector<std::map<Like, std::vector<double>>> times_of_companions() const {
+  using Times = std::map<Like, std::vector<double>>;  // of each kind in order
+
+  /// But for what holds as the motion begins, at a time that is given: a companion, which begins a rounding aside, has
+  /// it there, a moment later, or not at all.
+  Times times_of(const std::vector<Happening>& happenings) const {
     constexpr double moment = 1e-12;  // of the run
     const double near = moment * std::abs(plan_.run.end - plan_.run.begin);
     std::set<Like> begins;
     for (const Happening& h : result_.happenings)
       if (h.t == plan_.run.begin) begins.insert({h.kind, h.name});
-    std::vector<std::map<Like, std::vector<double>>> out(companions_.runs.size());
-    for (std::size_t r = 0; r < out.size(); ++r)
-      for (const Happening& other : companions_.runs[r].happenings) {
-        const Like like{other.kind, other.name};
-        if (!(begins.count(like) > 0 && std::abs(other.t - plan_.run.begin) <= near)) out[r][like].push_back(other.t);
-      }
+    Times out;
+    for (const Happening& h : happenings) {
+      const Like like{h.kind, h.name};
+      if (!(begins.count(like) > 0 && std::abs(h.t - plan_.run.begin) <= near)) out[like].push_back(h.t);
+    }
     return out;
   }
 
-  /// Times of events: by those of the companions, each by its count among its like.
+  /// [companions] the times of what happens to them that belong to those of the run.
+  std::vector<Times> times_of_companions(const Times& own) const {
+    std::vector<Times> out;
+    for (const CompanionRun& run : companions_.runs) {
+      Times theirs = times_of(run.happenings);
+      Times& matched = out.emplace_back();
+      for (const auto& [like, times] : own) matched[like] = matched_times(times, theirs[like]);
+    }
+    return out;
+  }
+
+  /// Times of events: by those of the companions.
   void tell_happenings() {
-    const auto times = times_of_companions();
+    const Times own = times_of(result_.happenings);
+    const std::vector<Times> others = times_of_companions(own);
     std::map<Like, std::size_t> counts;
     for (Happening& h : result_.happenings) {
-      if (h.t == plan_.run.begin) continue;
       const Like like{h.kind, h.name};
-      const std::size_t count = counts[like]++;
+      const auto times = own.find(like);
+      if (times == own.end()) continue;
+      const std::size_t count = counts[like];
+      if (count == times->second.size() || times->second[count] != h.t) continue;  // as the motion begins
+      ++counts[like];
       const double by_companions = error_of(h.t, [&](const CompanionRun& run) {
-        const auto& of_run = times[static_cast<std::size_t>(&run - companions_.runs.data())];
-        const auto found = of_run.find(like);
-        return found != of_run.end() && count < found->second.size() ? found->second[count] : infinity;
+        return others[static_cast<std::size_t>(&run - companions_.runs.data())].at(like)[count];
       });
       h.error = std::max(h.error, by_companions);
     }

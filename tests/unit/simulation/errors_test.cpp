@@ -373,6 +373,19 @@ TEST_CASE("an event that holds as the motion begins does not count among those o
   for (const Happening& h : r.happenings) CHECK(h.error < 1e-14);
 }
 
+TEST_CASE("a touch of zero that rounding hides from a companion takes no digits of the crossings after it") {
+  const auto result =
+      run("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\nrun 10\n"
+          "event zero when tan(x pi) = 0 : record\n");  // x = cos t: crossings at x = 0, touches at ±1, the start one
+                                                        // of them
+  REQUIRE(result.happenings.size() == 6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Happening& h = result.happenings[i];
+    CHECK(std::abs(h.t - static_cast<double>(i + 1) * std::acos(0.0)) <= h.error);
+    CHECK(h.error < (i % 2 == 0 ? 1e-14 : 1e-7));
+  }
+}
+
 TEST_CASE("an energy is known at times at which the state is lost") {
   const ModelText m(double_pendulum);
   Probe probe;
