@@ -2,6 +2,7 @@
 
 #include <maupertuis/simulation.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -384,6 +385,22 @@ TEST_CASE("a touch of zero that rounding hides from a companion takes no digits 
     CHECK(std::abs(h.t - static_cast<double>(i + 1) * std::acos(0.0)) <= h.error);
     CHECK(h.error < (i % 2 == 0 ? 1e-14 : 1e-7));
   }
+}
+
+TEST_CASE("a touch that rounding makes two crossings of, in one run or another, takes no digits of other crossings") {
+  const auto result =
+      run("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x' = 1\nrun 15\n"
+          "event zero when (x^2 - 1)*(x - 0.999) = 0 : record\n");  // x = sin t
+  const double turn = std::acos(0.0), aside = std::acos(0.999);
+  for (int k = 0; k < 5; ++k)
+    for (const double t : {(2 * k + 1) * turn - aside, (2 * k + 1) * turn, (2 * k + 1) * turn + aside}) {
+      const bool is_turn = t == (2 * k + 1) * turn;
+      if (!is_turn && k % 2 == 1) continue;
+      CAPTURE(t);
+      CHECK(std::any_of(result.happenings.begin(), result.happenings.end(), [&](const Happening& h) {
+        return std::abs(h.t - t) <= h.error + 1e-15 && h.error < (is_turn ? 1e-6 : 1e-12);
+      }));
+    }
 }
 
 TEST_CASE("an energy is known at times at which the state is lost") {

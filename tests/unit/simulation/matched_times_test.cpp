@@ -14,15 +14,20 @@ TEST_CASE("times of two runs belong together in their order") {
   CHECK(matched_times(Times{1, 2, 3}, Times{1e-8, 1, 2, 3}) == Times{1, 2, 3});
   CHECK(matched_times(Times{1, 2, 3}, Times{1, 1.9, 2, 3}) == Times{1, 2, 3});
   CHECK(matched_times(Times{1, 2, 3}, Times{1, 2, 3, 4}) == Times{1, 2, 3});
-  CHECK(matched_times(Times{1, 2, 3}, Times{0, 0.5, 1, 1.5, 2, 2.5, 3}) == Times{1, 2, 3});
+  CHECK(matched_times(Times{1, 2, 3}, Times{0.1, 0.5, 1, 1.5, 2, 2.5, 3}) == Times{1, 2, 3});
   // This one has more: what the other run has not has the nearest time there, unless it comes last.
   CHECK(matched_times(Times{0.1, 1, 2}, Times{1, 2}) == Times{1, 1, 2});
   CHECK(matched_times(Times{1, 1.4, 1.8, 2, 2.5}, Times{1, 2}) == Times{1, 1, 2, 2, none});
   CHECK(matched_times(Times{1, 2}, Times{}) == Times{none, none});
   CHECK(matched_times(Times{}, Times{1}).empty());
+  // As many, but each has one that the other has not.
+  CHECK(matched_times(Times{1, 2, 3, 4, 5, 5.1, 6}, Times{1, 1.1, 2, 3, 4, 5, 6}) == Times{1, 2, 3, 4, 5, 5, 6});
+  CHECK(matched_times(Times{1}, Times{0, 0.9}) == Times{0.9});
+  CHECK(matched_times(Times{1}, Times{3}) == Times{3});
+  // Later and later, as in runs that part: they stay pairs.
+  CHECK(matched_times(Times{1, 2, 3, 4, 5}, Times{1.2, 2.4, 3.6, 4.8, 6}) == Times{1.2, 2.4, 3.6, 4.8, 6});
   // Backwards in time.
   CHECK(matched_times(Times{-1, -2, -3}, Times{-1e-8, -1, -2, -3}) == Times{-1, -2, -3});
   // Beyond some millions of steps one by one.
-  const Times many(4000, 1.0);
-  CHECK(matched_times(many, Times(8000, 2.0)) == Times(4000, 2.0));
+  CHECK(matched_times(Times(4000, 1.0), Times(8000, 2.0)) == Times(4000, 2.0));
 }
