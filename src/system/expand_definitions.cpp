@@ -137,16 +137,24 @@ void replace_momenta(Model& model) {
 
 namespace {
 
-/// g for g^r with r = 1/2, 3/2, …, which vanishes where g does; g − 1 for acos g. One that rises or falls stays so
-/// where g is never negative, as in |x|^(1/2).
+/// g for g^r with r = 1/2, 3/2, …, which vanishes where g does; 1 − g for acos g: of the same sign, in factors of a
+/// product and in branches of a piecewise formula too. One that rises or falls stays so where g is never negative, as
+/// in |x|^(1/2).
 Expr without_root(Expr f, int direction) {
   using maupertuis::Kind;
-  if (f.is(Kind::Product)) {
-    std::vector<Expr> factors;
-    for (std::size_t i = 0; i < f.size(); ++i) factors.push_back(without_root(f[i], direction));
-    return f.context().product(factors);
+  const auto parts = [&](std::size_t first, std::size_t step) {
+    std::vector<Expr> out;
+    for (std::size_t i = 0; i < f.size(); ++i)
+      out.push_back(i >= first && (i - first) % step == 0 ? without_root(f[i], direction) : f[i]);
+    return out;
+  };
+  if (f.is(Kind::Product)) return f.context().product(parts(0, 1));
+  if (f.is(Kind::Piecewise)) {
+    std::vector<Expr> branches = parts(1, 2);
+    branches.back() = without_root(f[f.size() - 1], direction);
+    return f.context().function(Kind::Piecewise, branches);
   }
-  if (f.is(Kind::Acos) && direction == 0) return f[0] - Rational(1);
+  if (f.is(Kind::Acos) && direction == 0) return -f[0] + Rational(1);
   const Rational* exponent = f.is(Kind::Power) ? f[1].number_or_null() : nullptr;
   const bool is_root = exponent && exponent->sign() > 0 && !exponent->is_integer();
   return is_root && (direction == 0 || f[0].is(Kind::Abs)) ? f[0] : f;

@@ -461,6 +461,12 @@ TEST_CASE("an event whose formula has a root, without a series where it vanishes
   check_instants("sign(x)*abs(x)^(1/2) = 0 rising", {zeros[1]});
   check_instants("2 x^2*acos(x) = 0", {zeros[0], zeros[1], 2 * half_turn, zeros[2]});
   check_instants("sqrt(x) = 0 rising", {});  // it has no value before
+  // Branches of a piecewise formula.
+  check_instants("piecewise(x < 0 : sqrt(abs(x)), else : x^2) = 0", zeros);
+  check_instants("piecewise(x < 0 : -abs(x)^(3/2), else : x) = 0", zeros);
+  check_instants("piecewise(x < 0 : -abs(x)^(3/2), else : x) = 0 falling", {zeros[0], zeros[2]});
+  check_instants("piecewise(x < 0 : -sqrt(abs(x)), else : x^2 (x - 1/2)) = 0",
+                 {half_turn / 3, zeros[0], zeros[1], 5 * half_turn / 3, 7 * half_turn / 3, zeros[2]});
   check_instants("sqrt(x^2) = 0.5", {half_turn / 3, 2 * half_turn / 3, 4 * half_turn / 3, 5 * half_turn / 3,
                                      7 * half_turn / 3, 8 * half_turn / 3});
 }
