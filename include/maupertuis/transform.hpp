@@ -36,6 +36,10 @@ std::vector<Expr> variational_residual(Expr lagrangian, std::span<const Expr> co
 Expr substitute(Expr e, const ExprMap& replacements);
 std::vector<Expr> substitute(std::span<const Expr> roots, const ExprMap& replacements);
 
+/// Whether it is nowhere below 0 where it has a value, seen by its form alone: even powers and even roots, |x|, exp and
+/// cosh, and sums and products of these and of numbers. False says nothing. Cost O(nodes).
+bool is_never_negative(Expr e);
+
 /// Distributes products over sums and integer powers of sums, flattens sums, collects like terms. No trigonometry.
 /// Stops at `term_budget` terms and returns nothing (an empty handle).
 Expr expand(Expr e, std::size_t term_budget = 20000);

@@ -139,7 +139,7 @@ namespace {
 
 /// g for g^r with r = 1/2, 3/2, …, which vanishes where g does; 1 − g for acos g: of the same sign, in factors of a
 /// product and in branches of a piecewise formula too. One that rises or falls stays so where g is never negative, as
-/// in |x|^(1/2).
+/// x² + y² is.
 Expr without_root(Expr f, int direction) {
   using maupertuis::Kind;
   const auto parts = [&](std::size_t first, std::size_t step) {
@@ -157,7 +157,7 @@ Expr without_root(Expr f, int direction) {
   if (f.is(Kind::Acos) && direction == 0) return -f[0] + Rational(1);
   const Rational* exponent = f.is(Kind::Power) ? f[1].number_or_null() : nullptr;
   const bool is_root = exponent && exponent->sign() > 0 && !exponent->is_integer();
-  return is_root && (direction == 0 || f[0].is(Kind::Abs)) ? f[0] : f;
+  return is_root && (direction == 0 || is_never_negative(f[0])) ? f[0] : f;
 }
 
 }  // namespace

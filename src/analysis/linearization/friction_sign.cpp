@@ -10,22 +10,6 @@
 namespace maupertuis {
 namespace {
 
-/// By its form, where it has a value: even powers and even roots, and sums and products of what is never negative.
-bool is_never_negative(Expr e) {
-  if (e.is_number()) return e.number().to_double() >= 0;
-  if (e.is(Kind::Sum) || e.is(Kind::Product)) {
-    for (std::size_t i = 0; i < e.size(); ++i)
-      if (!is_never_negative(e[i])) return false;
-    return true;
-  }
-  if (e.is(Kind::Power)) {
-    const Rational* exponent = e[1].number_or_null();
-    const auto parts = exponent ? exponent->small() : std::nullopt;
-    return is_never_negative(e[0]) || (parts && (parts->numerator % 2 == 0 || parts->denominator % 2 == 0));
-  }
-  return e.is(Kind::Pi) || e.is(Kind::Abs) || e.is(Kind::Exp) || e.is(Kind::Cosh);
-}
-
 /// Of a symmetric matrix of numbers, by exact elimination: no pivot is negative, and a row whose pivot is 0 is 0.
 bool has_no_negative_eigenvalue(std::vector<std::vector<Rational>> a) {
   const Rational zero(0);
