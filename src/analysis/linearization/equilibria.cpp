@@ -201,7 +201,7 @@ class Search {
     const SteadyState system = equations_of(at_rest);
     for (OperatingPoint from : starts) {
       if (at_rest) std::fill(from.v.begin(), from.v.end(), 0);
-      auto solution = system.solve(from, !search_.fixed.any());  // values that are given are rounded
+      auto solution = solved_within_turns(from, system);
       if (!solution) continue;
       settle(*solution, system);
       if (!names_as_found_) solution->point = second_names_.first_name(solution->point);
@@ -213,6 +213,30 @@ class Search {
       keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false, {}});
     }
     families_.link(at_rest, system);
+  }
+
+  /// An angle of 1e15 rad has no digits left within its turn: from where it is within one, the search begins again.
+  std::optional<SteadyState::Solution> solved_within_turns(OperatingPoint from, const SteadyState& system) const {
+    constexpr int most_returns = 3;
+    for (int returns = 0; returns <= most_returns; ++returns) {
+      auto solution = system.solve(from, !search_.fixed.any());  // values that are given are rounded
+      if (!solution || !is_many_turns_away(solution->point)) return solution;
+      from = solution->point;
+      wrap_angles(from);
+    }
+    return std::nullopt;
+  }
+
+  bool is_many_turns_away(const OperatingPoint& point) const {
+    constexpr double many = 100;  // rad: known to 1e-14 within the turn
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (e_.is_periodic[i] && !held(i) && std::abs(point.q[i]) > many) return true;
+    return false;
+  }
+
+  void wrap_angles(OperatingPoint& point) const {
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (e_.is_periodic[i] && !held(i)) point.q[i] = wrapped(point.q[i]);
   }
 
   /// How it can be moved on and stay a solution, whatever was given: a family is one of the equations.
@@ -236,8 +260,7 @@ class Search {
 
   /// Angles into (−π, π]; and plain values, 0 and multiples of π/12, where the equations hold there as well.
   void settle(SteadyState::Solution& solution, const SteadyState& system) const {
-    for (std::size_t i = 0; i < e_.n; ++i)
-      if (e_.is_periodic[i] && !held(i)) solution.point.q[i] = wrapped(solution.point.q[i]);
+    wrap_angles(solution.point);
     OperatingPoint plain = solution.point;
     for (std::size_t i = 0; i < e_.n; ++i) {
       if (held(i)) continue;

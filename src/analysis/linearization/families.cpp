@@ -71,7 +71,9 @@ bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadySt
 
 std::optional<OperatingPoint> Families::next_to(const OperatingPoint& from, double farthest,
                                                 const SteadyState& system) {
-  if (const auto found = system.solve(from, false, turns_from_nearby)) return found->point;
+  // A step of double along what its derivatives do not tell from none may lead far away.
+  if (const auto found = system.solve(from, false, turns_from_nearby))
+    if (distance(e_, sizes_, from, found->point) <= farthest / 2) return found->point;
   if (precise_steps_ == most_precise_steps) return std::nullopt;
   ++precise_steps_;
   const auto found = system.precise_root(from, farthest);

@@ -287,11 +287,12 @@ std::optional<SteadyState::Solution> SteadyState::precise_root(const OperatingPo
   return proved(guess, farthest);
 }
 
-/// [n] the sizes of the terms of R; infinite where one has no value.
+/// The sizes of the terms of R [n] and of what the constraints keep; infinite where one has no value.
 Vector SteadyState::sizes_of_terms(const OperatingPoint& point) const {
   if (!terms_) {
     ExprVector sizes;
-    for (const Expr& row : e_.balance_rows) sizes.push_back(size_of_terms(row));
+    for (const ExprVector* rows : {&e_.balance_rows, &e_.kept_rows})
+      for (const Expr& row : *rows) sizes.push_back(size_of_terms(row));
     terms_ = std::make_unique<RepeatedEvaluation>(sizes);
   }
   const Bindings at = values_at(e_, point);
@@ -305,7 +306,7 @@ bool SteadyState::is_unbalanced(const OperatingPoint& point) const {
   constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), rounded_to = 1e-11;  // of sizes: zeros
   const System s = system_at(point);
   const Vector z = unknowns(point).cwiseAbs(), terms = sizes_of_terms(point);
-  for (Index i = 0; i < terms.size(); ++i) {
+  for (Index i = 0; i < static_cast<Index>(e_.n); ++i) {
     double size = terms[i];
     for (Index j = 0; j < z.size(); ++j) {
       const bool is_position = static_cast<std::size_t>(j) < free_q_.size();
@@ -317,7 +318,15 @@ bool SteadyState::is_unbalanced(const OperatingPoint& point) const {
   return false;
 }
 
-/// Where rows pass as rounding of other works, or rounding of their own terms leaves the place open.
+/// Next to a singular place of the constraints multipliers without bound balance the forces, at the place none do.
+bool SteadyState::has_no_multipliers(OperatingPoint point) const {
+  if (e_.m == 0) return false;
+  fit_multipliers(point);
+  return is_unbalanced(point);
+}
+
+/// Where rows pass as rounding of other works, or rounding of their own terms leaves the place open: near a singular
+/// place of the constraints, too, where multipliers without bound balance any force.
 bool SteadyState::is_doubtful(const Solution& solution) const {
   constexpr double known = 1e-9, operations = 8 * std::numeric_limits<double>::epsilon();
   const Vector z = unknowns(solution.point);
@@ -329,8 +338,8 @@ bool SteadyState::is_doubtful(const Solution& solution) const {
   }
   const Vector terms = sizes_of_terms(solution.point);
   const Equilibration by(s.j);
-  Matrix rounding = Matrix::Zero(s.j.rows(), forces);
-  for (Index i = 0; i < forces; ++i)
+  Matrix rounding = Matrix::Zero(s.j.rows(), terms.size());
+  for (Index i = 0; i < terms.size(); ++i)
     if (std::isfinite(terms[i])) rounding(i, i) = by.rows[i] * operations * terms[i];
   const Matrix moves = by.columns.asDiagonal() * least_squares(by.of(s.j), rounding, rank_of_balance).x;
   return length(moves.cwiseAbs().rowwise().sum(), z) > known;
@@ -426,7 +435,7 @@ std::optional<SteadyState::Solution> SteadyState::accepted(const Solution& solut
   if (has_arrived && !has_ways && !is_doubtful(solution)) return solution;
   std::optional<Solution> out = has_arrived ? proved(solution, next_to) : std::nullopt;
   if (!out && is_open) out = proved(solution, anywhere);
-  if (!out || (is_open && is_unbalanced(out->point))) return std::nullopt;
+  if (!out || (is_open && is_unbalanced(out->point)) || has_no_multipliers(out->point)) return std::nullopt;
   if (has_ways) find_family(*out);
   return out;
 }

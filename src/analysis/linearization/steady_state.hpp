@@ -63,6 +63,7 @@ class SteadyState {
   double largest_work(const System& s, const Vector& z) const;
   Matrix without_rounding(const System& s, const Vector& z) const;
   Matrix soft_ways(const Matrix& derivatives, const Equilibration& by) const;
+  bool has_no_multipliers(OperatingPoint point) const;
   bool is_doubtful(const Solution& solution) const;
   std::optional<Solution> proved(const Solution& solution, double farthest) const;
   Vector sizes_of_terms(const OperatingPoint& point) const;
@@ -76,7 +77,7 @@ class SteadyState {
   std::vector<double> momenta_, sizes_;
   Matrix by_rates_;  // [n × free rates]
   mutable std::unique_ptr<PreciseRoots> precise_;
-  mutable std::unique_ptr<RepeatedEvaluation> terms_;  // [n] the sizes of the terms of R
+  mutable std::unique_ptr<RepeatedEvaluation> terms_;  // the sizes of the terms of R and of what is kept
 };
 
 }  // namespace maupertuis

@@ -1,5 +1,7 @@
 #include "support.hpp"
 
+#include <set>
+
 using namespace maupertuis;
 
 namespace {
@@ -498,4 +500,60 @@ TEST_CASE("mirror images that are other motions are told both") {
   // z = r³: as in a plane at r = 0, and yet another place.
   CHECK(count("coord r : number, φ : angle\npoint P mass 1 at (r cos φ, r sin φ, r^3)\nV = 1/2 r^2\n"
               "start r = 1, φ' = 0.7\n") == 2);
+}
+
+TEST_CASE("places of a closed chain that are told close it, and none is where its links lie in one line") {
+  // Newton's method leaves for angles of 1e14 rad on the way, and next to the dead centre q1 = π, q2 = q3 = 0 forces of
+  // 1e9 N in the links balance their weight.
+  Linearized m(R"(system fivebar
+param m = 0.5 kg, a = 0.2 m, b = 0.3 m, d = 0.2 m, g = 9.81 m/s^2
+coord q1, q2, q3, q4 : angle
+body A1 mass m inertia 1/12 m a^2 at a/2 (cos q1, sin q1) rotation angle q1
+body B1 mass m inertia 1/12 m b^2 at a (cos q1, sin q1) + b/2 (cos q2, sin q2) rotation angle q2
+body A2 mass m inertia 1/12 m a^2 at (d, 0) + a/2 (cos q3, sin q3) rotation angle q3
+body B2 mass m inertia 1/12 m b^2 at (d, 0) + a (cos q3, sin q3) + b/2 (cos q4, sin q4) rotation angle q4
+constraint a cos q1 + b cos q2 = d + a cos q3 + b cos q4
+constraint a sin q1 + b sin q2 = a sin q3 + b sin q4
+gravity (0, -g)
+start q1 = 120 deg, q3 = 60 deg, q2 = 45 deg, q4 = 135 deg
+)");
+  const ModalStudy study = m.study();
+  CHECK(study.failing.empty());
+  REQUIRE(study.entries.size() >= 8);
+  for (const ModalEntry& e : study.entries) {
+    const std::vector<double>& q = e.equilibrium.point.q;
+    CHECK(std::abs(0.2 * std::cos(q[0]) + 0.3 * std::cos(q[1]) - 0.2 - 0.2 * std::cos(q[2]) - 0.3 * std::cos(q[3])) <
+          1e-14);
+    CHECK(std::abs(0.2 * std::sin(q[0]) + 0.3 * std::sin(q[1]) - 0.2 * std::sin(q[2]) - 0.3 * std::sin(q[3])) < 1e-14);
+    for (const double force : e.equilibrium.point.multipliers) CHECK(std::abs(force) < 10);
+  }
+}
+
+TEST_CASE("an arm of six joints rests where all its links are upright, and each family is told once") {
+  Linearized m(R"(system arm
+param m = 2 kg, l = 0.4 m, g = 9.81 m/s^2, I1 = 0.01 kg m^2, I2 = 0.02 kg m^2
+coord q1, q2, q3, q4, q5 : angle
+frame F1 at (0, 0, 0) rotation axis (0, 0, 1) angle q1
+frame F2 at (l, 0, 0) rotation axis (0, 1, 0) angle q2 in F1
+frame F3 at (l, 0, 0) rotation axis (0, 1, 0) angle q3 in F2
+frame F4 at (l, 0, 0) rotation axis (1, 0, 0) angle q4 in F3
+frame F5 at (l, 0, 0) rotation axis (0, 1, 0) angle q5 in F4
+body B1 mass m inertia diag(I1, I2, I2) at (l/2, 0, 0) rotation axis (1, 0, 0) angle 0 in F1
+body B2 mass m inertia diag(I1, I2, I2) at (l/2, 0, 0) rotation axis (1, 0, 0) angle 0 in F2
+body B3 mass m inertia diag(I1, I2, I2) at (l/2, 0, 0) rotation axis (1, 0, 0) angle 0 in F3
+body B4 mass m inertia diag(I1, I2, I2) at (l/2, 0, 0) rotation axis (1, 0, 0) angle 0 in F4
+body B5 mass m inertia diag(I1, I2, I2) at (l/2, 0, 0) rotation axis (1, 0, 0) angle 0 in F5
+gravity (0, 0, -g)
+start q2 = 0.3 rad
+)");
+  const ModalStudy study = m.study();
+  std::set<std::vector<long>> folded;  // which of the links point upwards
+  for (const ModalEntry& e : study.entries) {
+    const std::vector<double>& q = e.equilibrium.point.q;
+    CHECK(std::abs(std::cos(q[1])) < 1e-12);
+    CHECK(std::abs(std::sin(q[2])) < 1e-12);
+    CHECK(std::abs(std::sin(q[4])) < 1e-12);
+    folded.insert({std::lround(std::sin(q[1])), std::lround(std::cos(q[2])), std::lround(std::cos(q[4]))});
+  }
+  CHECK(folded.size() == study.entries.size());
 }
