@@ -352,7 +352,7 @@ constexpr CodeEntry kEntries[] = {
      "`gravity` gives every point and body with a mass its potential energy. The same weight in V doubles it.",
      "coord y : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (0, y)\ngravity (0, -g)\nV += m g y\n",
      "coord y : length\nparam m = 1 kg, g = 9.81 m/s^2\npoint P mass m at (0, y)\ngravity (0, -g)\n"},
-    {"W0415", "a parameter is never used",
+    {"W0415", "a parameter or an input is never used",
      "Nothing in the model depends on it: often a term was forgotten or a name misspelt.",
      "coord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\n",
      "coord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"},
@@ -369,8 +369,9 @@ constexpr CodeEntry kEntries[] = {
      "`L = …` gives the whole Lagrangian; T and V count only as far as it names them: L = T - V + ….",
      "coord x : length\nparam m = 1 kg, k = 1 N/m\nV = 1/2 k x^2\nL = 1/2 m x'^2\n",
      "coord x : length\nparam m = 1 kg, k = 1 N/m\nV = 1/2 k x^2\nL = 1/2 m x'^2 - V\n"},
-    {"W0419", "a negative stiffness or damping coefficient",
-     "Such a spring pushes away from its rest, such a damper feeds energy in. Both are allowed, and rarely meant.",
+    {"W0419", "a negative stiffness, rest length or dissipation",
+     "Such a spring pushes away from its rest, such a damper or D feeds energy in. All this is allowed, and rarely "
+     "meant.",
      "coord x : length\nparam m = 1 kg, k = -1 N/m\npoint P mass m at (x, 0)\nspring O - P stiffness k\n",
      "coord x : length\nparam m = 1 kg, k = 1 N/m\npoint P mass m at (x, 0)\nspring O - P stiffness k\n"},
     {"W0420", "an expectation says nothing",
@@ -490,6 +491,15 @@ constexpr CodeEntry kEntries[] = {
      "m\nrun 1 s\n",
      "coord x, y : length\nparam m = 1 kg, k = 2 N/m\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\nstart x = 0 "
      "m\nrun 1 s\n"},
+    {"W0440", "a mass that changes with time",
+     "Lagrange's equations of a mass m(t) say d/dt (m v) = F: what joins or leaves has no velocity in the frame at "
+     "rest. Exhaust that leaves a rocket with the velocity u relative to it takes the momentum m' (v + u): that is a "
+     "force, m' (v + u), beside it, and then m v' = F + m' u.",
+     "param m0 = 10 kg, b = 0.1 kg/s\ncoord y : length\nlet m = m0 - b t\npoint R mass m at (0, y)\nrun 1 s\n", ""},
+    {"E0441", "a spring or damper between a place and itself",
+     "A link has a length and a direction, from one place to another one.",
+     "coord x : length\nparam m = 1 kg, k = 1 N/m\npoint P mass m at (x, 0)\nspring P - P stiffness k\n",
+     "coord x : length\nparam m = 1 kg, k = 1 N/m\npoint P mass m at (x, 0)\nspring O - P stiffness k\n"},
     {"E0436", "gravity, or a damping coefficient, depends on the motion",
      "`gravity` is one vector for all bodies, whose weights m g come from the potential −m g·r; a field that differs "
      "from place to place has a potential of its own. A damper is D = ½ c ṡ², which gives the force c ṡ only where c "

@@ -79,6 +79,17 @@ std::optional<ExprVector> between(Elaboration& e, Link::Kind kind, const syntax:
   return vector_sum(b.parts, scaled(e.number(-1), a.parts));
 }
 
+/// A link between a place and itself has no length and no direction.
+bool refuse_one_place(Elaboration& e, const ExprVector& way, const syntax::Expression& from,
+                      const syntax::Expression& to, const char* what) {
+  if (!std::all_of(way.begin(), way.end(), [](const Expr& x) { return x.is_zero(); })) return false;
+  e.diagnostics.error("E0441", Span{from.span.begin, to.span.end},
+                      fmt::format("both ends of this {} are one place", what),
+                      "It has no length that could change, and no direction of a force.",
+                      "Write another point at one end; a fixed place is a vector, (0, 0).");
+  return true;
+}
+
 std::string pair_name(const Elaboration& e, const syntax::ExpressionPtr& from, const syntax::ExpressionPtr& to) {
   return fmt::format("{} - {}", e.texts.slice(from->span), e.texts.slice(to->span));
 }
@@ -117,9 +128,11 @@ void spring(Elaboration& e, const syntax::SpringStatement& s, Span span) {
                             : Value::of(e.number(0), Dimension{});
   check_positive(e, k, *s.stiffness, "this stiffness",
                  "Such a spring pushes away from its rest length: every rest is unstable.");
+  if (s.length)
+    check_positive(e, l0, *s.length, "this rest length", "No spring is shorter than 0: it pulls at every length.");
   const bool refused = refuse_velocity(e, k, *s.stiffness, "the stiffness of a spring") ||
                        (s.length && refuse_velocity(e, l0, *s.length, "the rest length of a spring"));
-  if (!r || refused) return;
+  if (!r || refused || refuse_one_place(e, *r, *s.from, *s.to, "spring")) return;
   const Expr square = square_of(*r);
   const Expr stretch = l0.scalar().is_zero() ? square : pow(sqrt(square) - l0.scalar(), Rational(2));
   e.system().potential.push_back(
@@ -163,6 +176,7 @@ void damper(Elaboration& e, const syntax::DamperStatement& s, Span span) {
   check_positive(e, c, *s.coefficient, "this damping coefficient",
                  "Such a damper feeds energy in instead of taking it out.");
   if (!r || refuse_velocity_in_coefficient(e, c, *s.coefficient)) return;
+  if (refuse_one_place(e, *r, *s.from, *s.to, "damper")) return;
   ExprVector rates;
   for (const Expr& component : *r) rates.push_back(e.context.time_derivative(component));
   const Expr length = sqrt(square_of(*r));

@@ -85,6 +85,7 @@ void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics
   lint_rules::total_derivatives(subject);
   lint_rules::gravity_twice(subject);
   lint_rules::energies_without_velocity(subject);
+  lint_rules::negative_dissipation(subject);
   lint_rules::names_printed_alike(subject);
   lint_rules::jumps(subject);
   diagnostics.sort_by_place();

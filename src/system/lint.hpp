@@ -48,6 +48,8 @@ void total_derivatives(Subject& s);
 void gravity_twice(Subject& s);
 /// W0421: T without a velocity; W0422: D without a velocity.
 void energies_without_velocity(Subject& s);
+/// W0419: the D that is written feeds energy in, wherever it was looked at.
+void negative_dissipation(Subject& s);
 
 /// W0438: two names, or a name and a momentum or the energy function, that formulas print as one symbol.
 void names_printed_alike(Subject& s);

@@ -137,6 +137,25 @@ void energies_without_velocity(Subject& s) {
                             "Linear damping is D = 1/2 c x'^2.");
 }
 
+void negative_dissipation(Subject& s) {
+  constexpr int places = 12;
+  Expr power = s.system.context->number(0);
+  const EnergyTerm* written = nullptr;
+  for (const EnergyTerm& t : s.system.dissipation) {
+    if (t.origin != "D") continue;
+    if (!written) written = &t;
+    const Expr d = expand_time_derivatives(t.value);
+    const ExprVector slopes = gradient(d, s.velocities);
+    for (std::size_t i = 0; i < slopes.size(); ++i) power = power + slopes[i] * s.velocities[i];
+  }
+  if (!written) return;
+  for (int attempt = 0; attempt < places; ++attempt)
+    if (!(evaluate(power, sample(s, attempt)) < 0)) return;
+  s.diagnostics.warning("W0419", written->span, "this D is negative",
+                        "Its forces −∂D/∂q̇ point along the velocities wherever it was looked at: they feed energy in.",
+                        "Friction is D = 1/2 c x'^2, with its positive sign.");
+}
+
 bool claims(Subject& s) {
   bool contested = false;
   const char* name[] = {"T", "V", "U", "L", "D"};

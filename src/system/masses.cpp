@@ -23,12 +23,25 @@ bool refuse_coordinate(Elaboration& e, const Expression& x, const std::string& w
   return true;
 }
 
+/// Lagrange's equations of a mass m(t) are those of d/dt (m v) = F: what comes or goes has no velocity of its own. That
+/// of a rocket's exhaust is its own affair, and forgotten as a rule.
+void tell_of_time(Elaboration& e, const Expression& x, const std::string& what, const Expr& mass) {
+  if (!e.context.depends_on_time(mass.id())) return;
+  e.diagnostics.warning(
+      "W0440", x.span, fmt::format("{} changes with time", what),
+      "The equation of motion is d/dt (m v) = F then: what joins or leaves has no velocity, seen from "
+      "the frame at rest, and takes or brings no momentum.",
+      "Where it has the velocity u relative to the body, add its momentum: force on P = m' (P' + u), "
+      "m' the rate of the mass, P' and u in components.");
+}
+
 /// A mass in kg; poisoned with a message if its value cannot be one.
 Value mass_of(Elaboration& e, const Expression& x, const std::string& name) {
   const std::string what = fmt::format("the mass of {}", name);
   Value m = scalar_of(e, x, dimensions::mass(), what);
   if (m.poisoned || m.scalar().is_zero()) return m;  // `mass 0` says that it has none
   if (refuse_coordinate(e, x, what, m.order)) return Value::poison();
+  tell_of_time(e, x, what, m.scalar());
   const std::optional<double> size = constant_value(e, m.scalar());
   if (!size || *size > 0) return m;
   const bool zero = *size == 0;

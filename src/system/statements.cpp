@@ -53,12 +53,12 @@ void warn_idle_energies(Elaboration& e) {
 void warn_unused(Elaboration& e) {
   warn_idle_energies(e);
   for (const Declaration& d : e.table.declarations()) {
-    if (d.kind != Declaration::Kind::Parameter && d.kind != Declaration::Kind::Definition) continue;
+    const bool definition = d.kind == Declaration::Kind::Definition;
+    if (d.kind != Declaration::Kind::Parameter && d.kind != Declaration::Kind::Input && !definition) continue;
     if (d.used) continue;
-    const bool parameter = d.kind == Declaration::Kind::Parameter;
-    e.diagnostics.warning(parameter ? "W0415" : "W0416", d.span,
+    e.diagnostics.warning(definition ? "W0416" : "W0415", d.span,
                           fmt::format("the {} `{}` is never used", word_of(d.kind), d.name),
-                          parameter ? "Nothing in the model depends on it." : "No formula of the model names it.",
+                          definition ? "No formula of the model names it." : "Nothing in the model depends on it.",
                           "Remove it, or check the formula that should contain it.");
   }
   const auto named = [&](const std::string& name) {

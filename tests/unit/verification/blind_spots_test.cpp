@@ -109,3 +109,14 @@ TEST_CASE("a narrow window of instability is looked at where its formula says it
   fails(spring("sqrt(c)", "0.001"), "expect stable for Ω < 5 ± 1e-6");
   passes(spring("7", "0.01"), "expect stable for Ω < 5 ± 1e-6");
 }
+
+TEST_CASE("the energy is kept where the motor is off and the damping is 0") {
+  const auto arm = [](const std::string& torque, const std::string& damping) {
+    return "param m = 1 kg, l = 1 m, g = 9.81 m/s^2, c = " + damping +
+           "\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\ngravity (0, -g)\ninput M : [N m] = " + torque +
+           "\nforce θ = M\nD = 1/2 c θ'^2\nstart θ = 1 rad\nrun 2 s\n";
+  };
+  passes(arm("0", "0 N m s"), "expect energy conserved rel 1e-13");
+  fails(arm("0", "1e-3 N m s"), "expect energy conserved rel 1e-13");
+  fails(arm("1e-3 N m", "0 N m s"), "expect energy conserved rel 1e-13");
+}
