@@ -391,15 +391,33 @@ class Start {
     }
   }
 
+  /// The start value whose unit the model writes; null where it writes none.
+  const StartValue* written_in_unit(const StartAdjustment& a) const {
+    for (const StartValue& v : model_.experiment.start)
+      if (v.coordinate == a.coordinate && v.order == a.order && !v.unit.empty()) return &v;
+    return nullptr;
+  }
+
+  std::string moved_text(const StartAdjustment& a) const {
+    const std::string name = system_.coordinates[a.coordinate].name + (a.order == 0 ? "" : "'");
+    const StartValue* given = written_in_unit(a);
+    if (!given) return name + " " + change_text(a.from, a.to);
+    const double by = given->unit_factor;
+    return fmt::format("{} {} {}", name, change_text(a.from / by, a.to / by), given->unit);
+  }
+
   void warn(const ConsistentStart& out) {
     std::string moved;
-    for (const StartAdjustment& a : out.adjustments)
-      if (a.written)
-        moved += fmt::format("{}{}{} {}", moved.empty() ? "" : ", ", system_.coordinates[a.coordinate].name,
-                             a.order == 0 ? "" : "'", change_text(a.from, a.to));
+    bool in_si = false;
+    for (const StartAdjustment& a : out.adjustments) {
+      if (!a.written) continue;
+      in_si = in_si || !written_in_unit(a);
+      moved += (moved.empty() ? "" : ", ") + moved_text(a);
+    }
     if (!moved.empty())
       diagnostics_.warning("W0701", span(),
-                           fmt::format("the start was moved onto the constraints: {} (SI units)", moved),
+                           fmt::format("the start was moved onto the constraints: {}{}", moved,
+                                       in_si && !system_.dimensionless ? " (SI where no unit stands)" : ""),
                            "The written values contradict the constraints, so that the least kinetic change was made.",
                            "Correct the values, or give fewer of them.");
     else if (out.searched)

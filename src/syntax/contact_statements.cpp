@@ -9,7 +9,11 @@ StatementBody StatementParser::contact_statement() {
   ContactStatement statement;
   statement.left = formula();
   statement.at_most = peek().is("<=");
-  if (!accept(">=") && !accept("<=")) fail_expected("`>=` or `<=` after the left side of the contact");
+  if (!accept(">=") && !accept("<="))
+    fail_expected("`>=` or `<=` after the left side of the contact",
+                  peek().is("=")                     ? "What always touches is a constraint: constraint a = b."
+                  : peek().is(">") || peek().is("<") ? fmt::format("A contact may close: write {}=.", peek().text)
+                                                     : fmt::format("Write contact {} >= 0.", text_of(*statement.left)));
   statement.right = quantity();
   while (!at_end()) {
     if (accept("name"))

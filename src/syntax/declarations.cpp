@@ -114,4 +114,18 @@ std::vector<Name> Declarations::of(const TokenList& list, const StatementTokens&
   return names;
 }
 
+std::vector<Name> Declarations::lost_with(const TokenList& list, const StatementTokens& statement) {
+  std::vector<Name> names = of(list, statement);
+  const Token& first = list.tokens[statement.begin];
+  const bool no_statement = first.kind == Token::Kind::Name && !is_statement_word(first.text);
+  if (!first.is("param") && !first.is("let") && !no_statement) return names;
+  const auto is_new = [&](const Name& name) {
+    return std::none_of(names.begin(), names.end(), [&](const Name& known) { return known.text == name.text; });
+  };
+  for (std::size_t at = statement.begin + 1; at + 1 < statement.end; ++at)
+    if (list.tokens[at].kind == Token::Kind::Name && list.tokens[at + 1].is("="))
+      if (Name name = name_of(list.tokens[at]); is_new(name)) names.push_back(std::move(name));
+  return names;
+}
+
 }  // namespace maupertuis::syntax

@@ -25,6 +25,8 @@ class Declarations {
   const std::string& independent() const { return independent_; }
   /// The names that one statement declares, for messages and recovery.
   static std::vector<Name> of(const TokenList& list, const StatementTokens& statement);
+  /// The names that a statement with a mistake was to declare: of `param m = 1 kg l = 1 m`, without a comma, l too.
+  static std::vector<Name> lost_with(const TokenList& list, const StatementTokens& statement);
 
  private:
   std::unordered_map<std::string, Kind> names_;

@@ -46,9 +46,32 @@ bool opens_path(const Token& word, const Token& after) {
 
 }  // namespace
 
+// 2 sin(3) [m] ± 1e-9
+void StatementParser::refuse_unit_behind_formula() {
+  std::size_t last = 0;
+  while (index_ + last < end_ && !peek(last).is("]")) ++last;
+  const Span unit = cover(peek().span, index_ + last < end_ ? peek(last).span : peek().span);
+  fail("E0111", unit, "a unit in square brackets stands directly after a number",
+       "Behind a formula it would not say how far back it reaches.",
+       fmt::format("Multiply by it: … * 1 {}.", text_of(unit)));
+}
+
+// 0.5 rad +- 1e-9, which is a sum for the grammar, and +/-.
+void StatementParser::refuse_spelled_tolerance() {
+  const std::vector<Token>& tokens = context_.list.tokens;
+  for (std::size_t i = end_ - 1; i > 0 && !tokens[i].is("expect"); --i) {
+    const Token &plus = tokens[i - 1], &minus = tokens[i];
+    if (!plus.is("+") || !minus.is("-") || !minus.attached) continue;
+    fail("E0127", cover(plus.span, minus.span), "`+-` is not read as ±", "It is a sum with a negative number.",
+         "Write ± (U+00B1), or rel and a part: ± 1e-9, rel 1e-6.");
+  }
+}
+
 Tolerance StatementParser::tolerance(bool required) {
   if (accept("±")) return {quantity(), false};
   if (accept("rel")) return {quantity(), true};
+  if (required && peek().is("[")) refuse_unit_behind_formula();
+  if (required && at_end()) refuse_spelled_tolerance();
   if (required && at_end())
     fail("E0127", statement_span(), "this expectation does not say how near the value has to be",
          "A computed value agrees with a number only up to an error.",

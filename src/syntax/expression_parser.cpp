@@ -172,6 +172,7 @@ ExpressionParser::Node ExpressionParser::postfix() {
       if (!named && node->kind != Kind::TimeDerivative) node = make(Kind::TimeDerivative, node->span, {node});
       ++node->primes;
       node->span = cover(node->span, token.span);
+      refuse_time_of_derivative(*node);
     } else {
       return node;
     }
@@ -180,6 +181,17 @@ ExpressionParser::Node ExpressionParser::postfix() {
 
 // ------------------------------------------------------------------------------------------------------- operands
 
+// [a, b], as one writes for another program.
+bool ExpressionParser::opens_a_list() const {
+  int depth = 0;
+  for (std::size_t i = 0; index_ + i < end_; ++i) {
+    depth += peek(i).is("(") || peek(i).is("[") ? 1 : peek(i).is(")") || peek(i).is("]") ? -1 : 0;
+    if (depth == 0) return false;
+    if (depth == 1 && peek(i).is(",")) return true;
+  }
+  return false;
+}
+
 ExpressionParser::Node ExpressionParser::primary() {
   const Token& token = peek();
   if (token.kind == Token::Kind::Number) return number();
@@ -187,7 +199,9 @@ ExpressionParser::Node ExpressionParser::primary() {
   if (token.is("friction") && peek(1).is("(")) return arguments_of(next(), {"friction"});
   if (token.kind != Token::Kind::Name || is_clause_word(token.text)) {
     fail_expected("a number, a name or a bracket",
-                  token.is("[") ? "A unit in square brackets stands directly after a number: 3 [J]." : "");
+                  !token.is("[")   ? ""
+                  : opens_a_list() ? "A vector stands in round brackets: (a, b)."
+                                   : "A unit in square brackets stands directly after a number: 3 [J].");
   }
   if (const Function* function = find_function(token.text)) return call(*function);
   if (context_.declarations.complex() && peek(1).is("(") && !context_.declarations.contains(token.text))
@@ -274,6 +288,19 @@ bool ExpressionParser::is_momentum(std::string_view name) const {
          (kind == Declarations::Kind::Coordinate || kind == Declarations::Kind::Angle);
 }
 
+// x'(t), as one writes on paper.
+void ExpressionParser::refuse_time_of_derivative(const Expression& rate) {
+  const std::string& independent = context_.declarations.independent();
+  const bool named = rate.kind == Expression::Kind::Name && !rate.bracketed;
+  if (!named || !peek().is("(") || !peek(1).is(independent) || !peek(2).is(")")) return;
+  const std::string text = text_of(rate);
+  fail("E0121", cover(rate.span, peek(2).span),
+       fmt::format("`{0}({1})` would be {0} times {2}", text, independent,
+                   independent == "t" ? "the time" : independent),
+       fmt::format("{} depends on {} by itself.", text, independent == "t" ? "time" : independent),
+       fmt::format("Write {}.", text));
+}
+
 // A name before a bracket is a factor, θ(t) is a habit, and anything else is a function that does not exist.
 void ExpressionParser::check_application(const Token& name) {
   if (!peek().is("(")) return;
@@ -296,6 +323,9 @@ void ExpressionParser::check_application(const Token& name) {
     return;  // d/dt (…): `system` tells it
   if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
   if (name.is("i") && context_.declarations.complex()) return;
+  if (context_.lost && std::any_of(context_.lost->begin(), context_.lost->end(),
+                                   [&](const Name& lost) { return lost.text == name.text; }))
+    return;
   unknown_before_bracket(name);
 }
 

@@ -22,6 +22,8 @@ struct ParseContext {
   Diagnostics& diagnostics;
   /// What was read as units, where someone wants to know.
   std::vector<UnitExpression>* units = nullptr;
+  /// Names whose statements were lost to a mistake that is told, before the statement that is read.
+  const std::vector<Name>* lost = nullptr;
 };
 
 /// Recursive descent over the tokens of one statement: the cursor, formulas, and quantities.
@@ -46,6 +48,8 @@ class ExpressionParser {
   void expect_end();
   /// E0105 where `9,81` stands at the cursor: a decimal comma.
   void refuse_decimal_comma();
+  void refuse_time_of_derivative(const Expression& rate);
+  bool opens_a_list() const;
   static std::string describe(const Token& token);
   static std::optional<Operator> product_operator(const Token& token);
   static bool is_constant(const Expression& e);

@@ -29,7 +29,7 @@ std::vector<ExpressionPtr> StatementParser::bracketed_values(std::size_t count, 
   if (!peek().is(")")) fail_expected("`,` or `)`");
   const Span span = cover(open, next().span);
   if (values.size() != count) {
-    fail("E0116", span, fmt::format("here stand {} values, not {}", count, values.size()), "",
+    fail("E0116", span, fmt::format("{} values belong here, not {}", count, values.size()), "",
          fmt::format("Write {}.", form));
   }
   return with_unit_after(std::move(values));

@@ -42,14 +42,14 @@ SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics) {
   }
   tree.declarations = std::make_shared<const Declarations>(*list, statements);
   lint_letters(*list, statements, source, diagnostics);
-  const ParseContext context{*list, source, *tree.declarations, diagnostics};
+  const ParseContext context{*list, source, *tree.declarations, diagnostics, nullptr, &tree.lost_names};
   std::size_t failures = 0;
   for (const StatementTokens& statement : statements) {
     try {
       if (statement.broken) throw Abandoned{};
       for (Statement& parsed : StatementParser(context, statement).run()) tree.statements.push_back(std::move(parsed));
     } catch (const Abandoned&) {
-      for (Name& name : Declarations::of(*list, statement)) tree.lost_names.push_back(std::move(name));
+      for (Name& name : Declarations::lost_with(*list, statement)) tree.lost_names.push_back(std::move(name));
       if (++failures == kMostBrokenStatements) break;
     }
   }

@@ -140,6 +140,12 @@ std::string StatementParser::help_for_equation() const {
   if (second_derivative)
     return fmt::format("Equations of motion follow from the energies; to have one checked, write claim {}.", line);
   const std::string_view word = tokens[index_].text;
+  if (equals > index_ + 3 && tokens[equals - 1].is(")") && tokens[equals - 2].text == "0" &&
+      tokens[equals - 3].is("(") && equals + 1 < end_) {
+    const std::string name = text_of(cover(tokens[index_].span, tokens[equals - 4].span));
+    const std::string value = text_of(cover(tokens[equals + 1].span, tokens[end_ - 1].span));
+    return fmt::format("A value at the start is written start {} = {}.", name, value);
+  }
   if (equals > index_ + 1 && !tokens[index_ + 1].is("'"))
     return fmt::format(
         "A condition that the motion keeps is `constraint {}`; an equation of motion that is to be "

@@ -149,6 +149,8 @@ class StatementParser : private ExpressionParser {
   ExpressionPtr clause_quantity(std::string_view clause, const ExpressionPtr& already);
   [[noreturn]] void missing_clause(std::string_view clause, std::string_view statement, std::string_view example);
   Span statement_span() const;
+  void refuse_unit_behind_formula();
+  void refuse_spelled_tolerance();
 
   /// item {"," item}; after a mistake in one item the others are still read, so that all mistakes are told.
   template <typename Item>

@@ -20,6 +20,10 @@ StatementBody StatementParser::constraint_statement() {
     fail_expected("`=` after the left side of the constraint",
                   fmt::format("Its name stands at the end: write constraint {} name {}.", item_text(1),
                               text_of(*constraint.left)));
+  if (peek().is("<=") || peek().is(">=") || peek().is("<") || peek().is(">"))
+    fail_expected("`=` after the left side of the constraint",
+                  fmt::format("An inequality is a contact: contact {} {} ….", text_of(*constraint.left),
+                              peek().is("<=") || peek().is("<") ? "<=" : ">="));
   expect("=", "the left side of the constraint");
   constraint.right = quantity();
   if (accept("name")) constraint.name = new_name("the name of the constraint");

@@ -202,6 +202,9 @@ constexpr Pair kFormulaHabits[] = {
     {"csch", "1/sinh(x)"},
     {"coth", "1/tanh(x)"},
     {"if", "piecewise(x < 0 : a, else : b)"},
+    {"diff", "x' for diff(x, t)"},
+    {"Derivative", "x' for Derivative(x, t)"},
+    {"derivative", "x' for derivative(x, t)"},
     {"vec", "the components in brackets: (a, b)"},
 };
 

@@ -58,6 +58,15 @@ std::string unit_that_is_a_name(Elaboration& e, const Value& v, const Dimension&
       return fmt::format("Here `{0}` is the name of the model; with the unit it is written {1} [{0}].", name,
                          x.arguments[0]->text);
   }
+  const bool product =
+      x.kind == Kind::Binary && (x.op == syntax::Operator::Juxtapose || x.op == syntax::Operator::Multiply);
+  if (product && x.arguments[1]->kind == Kind::Name && x.arguments[1]->primes == 0) {  // 2 sin(1) m
+    const std::string& name = x.arguments[1]->text;
+    const auto unit = find_unit(name);
+    const Value factor = evaluate_formula(e, *x.arguments[0]);  // no new message can come of it
+    if (unit && !factor.poisoned && factor.order < 0 && factor.dimension.is_one() && unit->dimension.same_as(expected))
+      return fmt::format("Here `{0}` is the name of the model; for the unit write … * 1 [{0}].", name);
+  }
   for (const syntax::ExpressionPtr& a : x.arguments)
     if (std::string found = unit_that_is_a_name(e, v, expected, *a); !found.empty()) return found;
   return {};
@@ -185,14 +194,14 @@ bool is_finite(Elaboration& e, Expr value, const Expression& x, const std::strin
   return false;
 }
 
-void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& beside, const Expression& x) {
+void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& beside, const Expression& x, bool in_formula) {
   if (e.dimensionless || !v.is_literal || v.is_vector || beside != dimensions::angle()) return;
   const std::optional<double> size = constant_value(e, v.scalar());
   if (!size || std::abs(*size) <= 6.5) return;
-  e.diagnostics.warning(
-      "W0310", x.span, fmt::format("an angle of {:g} without a unit is in radians", *size),
-      fmt::format("That is {:.1f} turns.", std::abs(*size) / 6.283185307179586),
-      fmt::format("Write {:g}{} if degrees are meant.", *size, x.kind == Expression::Kind::Number ? " deg" : " [deg]"));
+  e.diagnostics.warning("W0310", x.span, fmt::format("an angle of {:g} without a unit is in radians", *size),
+                        fmt::format("That is {:.1f} turns.", std::abs(*size) / 6.283185307179586),
+                        fmt::format("Write {:g}{} if degrees are meant.", *size,
+                                    x.kind == Expression::Kind::Number && !in_formula ? " deg" : " [deg]"));
 }
 
 Span culprit_of_order(Elaboration& e, const Expression& x, int order) {

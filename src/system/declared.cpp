@@ -113,6 +113,13 @@ bool stays_a_symbol(Elaboration& e, const Value& v) {
 
 }  // namespace
 
+/// 9.81 m s-2, a difference for the grammar.
+static bool power_without_sign(const Expression& x) {
+  using Kind = Expression::Kind;
+  return x.kind == Kind::Binary && x.op == syntax::Operator::Subtract && x.arguments[1]->kind == Kind::Number &&
+         x.arguments[0]->span.end + 1 == x.arguments[1]->span.begin;
+}
+
 void elaborate_parameter(Elaboration& e, Declaration& d) {
   const Expression& x = *std::get<syntax::ParamStatement>(d.statement->body).items[d.item].value;
   d.done = true;
@@ -121,7 +128,8 @@ void elaborate_parameter(Elaboration& e, Declaration& d) {
     e.diagnostics.error("E0209", x.span, "a parameter is given by a quantity, not by a formula",
                         "A parameter is a number with its unit, which a study may change; what follows from other "
                         "quantities is a definition.",
-                        fmt::format("Write `let {} = …`.", d.name));
+                        power_without_sign(x) ? "The power of a unit has the sign ^: m s^-2, m/s^2."
+                                              : fmt::format("Write `let {} = …`.", d.name));
     return;
   }
   Place place;
@@ -191,6 +199,19 @@ void elaborate_definition(Elaboration& e, Declaration& d) {
   e.system().definitions.push_back(std::move(definition));
 }
 
+/// input M : [N m] = 5, told in the unit that stands there: a torque is no energy in J.
+static bool refuse_number_without_unit(Elaboration& e, const syntax::InputStatement& s, const Unit& unit,
+                                       const std::string& name) {
+  const bool bare = s.value->kind == Expression::Kind::Number && s.unit && !e.dimensionless;
+  if (!bare || unit.dimension.is_one() || std::strtod(s.value->text.c_str(), nullptr) == 0) return false;
+  const std::string_view written = e.texts.slice(s.unit->span);
+  e.diagnostics.error("E0304", s.value->span,
+                      fmt::format("the input {} is in {}, this is a bare number", name, written),
+                      "Both sides of an equation have one dimension.",
+                      fmt::format("A number has a unit here, such as {} {}.", s.value->text, written));
+  return true;
+}
+
 void elaborate_input(Elaboration& e, Declaration& d) {
   const auto& s = std::get<syntax::InputStatement>(d.statement->body);
   if (!s.variables.empty()) return;  // a given field
@@ -198,6 +219,7 @@ void elaborate_input(Elaboration& e, Declaration& d) {
   d.value = Value::poison();
   const std::optional<Unit> unit = s.unit ? unit_of(e, *s.unit) : std::optional<Unit>(Unit{});
   if (!unit) return;
+  if (refuse_number_without_unit(e, s, *unit, d.name)) return;
   const Value v = scalar_of(e, *s.value, unit->dimension, fmt::format("the input {}", d.name));
   if (v.poisoned) return;
   if (v.order >= 0) {

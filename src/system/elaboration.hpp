@@ -113,7 +113,8 @@ std::optional<double> constant_value(const Elaboration& e, Expr value);
 /// False, and a message, if the values of the parameters make it infinite or undefined.
 bool is_finite(Elaboration& e, Expr value, const syntax::Expression& x, const std::string& what);
 /// W0310 where a bare number meets an angle and can hardly be in radians: `start θ = 60`, `cos(θ + 30)`.
-void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& beside, const syntax::Expression& x);
+void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& beside, const syntax::Expression& x,
+                     bool in_formula = false);
 /// Finds what `text` could be and reports it: unknown name, or a unit that needs brackets.
 void unknown_name(Elaboration& e, const std::string& text, Span span);
 /// A name that a statement mentions; null, and a message, if there is none of it.

@@ -58,6 +58,10 @@ bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Ex
 /// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant. In sin(10 t) the number has a unit.
 std::string help_for_argument(Elaboration& e, const Function& f, const Expression& x, const Dimension& found) {
   const Expression& argument = *x.arguments[0];
+  const Declaration* d = argument.kind == Expression::Kind::Name ? e.table.find(argument.text) : nullptr;
+  if (d && d->kind == Declaration::Kind::Coordinate && argument.primes == 0)
+    return fmt::format("Where `{0}` is an angle, it is declared as one: coord {0} : angle. Else divide it by a length.",
+                       argument.text);
   if (x.bare)
     return fmt::format(
         "Without brackets {0} takes `{1}` alone: put the whole argument in brackets, such as {0}({1} t).", x.text,
@@ -99,7 +103,7 @@ Value elementary(Elaboration& e, const Function& f, const Expression& x, const V
         "W0309", x.arguments[0]->span, fmt::format("a frequency in Hz stands in the argument of {} without 2π", x.text),
         "A frequency of 1 Hz turns the phase by 2π in a second.", fmt::format("Write {}(2 pi …).", x.text));
   if (f.angles == Angles::Argument) {
-    warn_of_degrees(e, a, dimensions::angle(), *x.arguments[0]);
+    warn_of_degrees(e, a, dimensions::angle(), *x.arguments[0], true);
     warn_of_degrees_in_parameter(e, a, x);
   }
   Expr value = apply(f.kind, a.scalar());

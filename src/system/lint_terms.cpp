@@ -64,6 +64,24 @@ void check_terms(Subject& s, const EnergyTerm& energy) {
 
 }  // namespace
 
+/// A place or a rotation that depends on the coordinate, and carries nothing.
+std::string advice_on_unused(const Subject& s, const Coordinate& c) {
+  const auto moves = [&](const ExprVector& parts) {
+    const Symbols found = symbols_in(expand_time_derivatives(parts));
+    return found.count(c.q) || found.count(c.velocity);
+  };
+  for (const Body& b : s.system.bodies) {
+    if (!b.mass && moves(b.position))
+      return fmt::format("{} moves with it and has no mass: write body {} mass m ….", b.name, b.name);
+    if (b.inertia.entries.empty() && moves(b.angular_velocity))
+      return fmt::format("{} turns with it and has no inertia: write body {} … inertia ….", b.name, b.name);
+  }
+  for (const Point& p : s.system.points)
+    if (!p.mass && moves(p.position))
+      return fmt::format("{} moves with it and has no mass: write point {} mass m at ….", p.name, p.name);
+  return "Remove it, or use it in a position or an energy.";
+}
+
 std::vector<bool> unused_coordinates(Subject& s) {
   ExprVector roots = {s.lagrangian, expand_time_derivatives(s.system.dissipation_function())};
   for (const AppliedForce& f : s.system.forces)
@@ -79,7 +97,7 @@ std::vector<bool> unused_coordinates(Subject& s) {
                           s.system.constrained()
                               ? "No energy, force or constraint depends on it: nothing determines its motion."
                               : "No energy and no force depends on it: nothing determines its motion.",
-                          "Remove it, or use it in a position or an energy.");
+                          advice_on_unused(s, c));
   }
   return out;
 }

@@ -82,7 +82,8 @@ Value component(Elaboration& e, const Value& base, const Expression& x) {
         "E0216", x.name_span, fmt::format("`{}` has no `.{}`", text, x.text),
         base.is_vector ? "A vector has the components .x, .y and .z."
                        : "Only points, bodies and vectors have components.",
-        x.text == "w" && base.is_vector ? "The angular velocity of a body is .ω."
+        x.text == "w" && base.is_vector       ? "The angular velocity of a body is .ω."
+        : !base.is_vector && x.text == "diff" ? fmt::format("A derivative by the time is written {}'.", text)
         : x.text.size() == 2 && x.text[0] == 'q'
             ? "A body or frame has .qw, .qx, .qy and .qz where it is declared with `rotation quaternion`."
             : "");
@@ -206,6 +207,19 @@ std::string near_function(const std::string& text) {
   return did_you_mean(text, functions);
 }
 
+/// What stands before a function in other languages: np.sin.
+bool is_library(const std::string& text) {
+  static constexpr std::string_view names[] = {"np", "numpy", "math", "Math", "sp", "sympy", "mpmath", "std", "cmath"};
+  return std::find(std::begin(names), std::end(names), text) != std::end(names);
+}
+
+/// `… 3 m` where the unit was meant, and a name is near: m1.
+std::string or_a_unit(const Elaboration& e, const std::string& text) {
+  return !e.dimensionless && find_unit(text)
+             ? fmt::format(" A unit stands in square brackets directly after a number: 3 [{}].", text)
+             : "";
+}
+
 void unknown_name_of(Elaboration& e, const std::string& text, Span span, bool in_formula) {
   if (is_silent(e, text)) return;
   if (!e.unknown_names.insert(text).second) return;  // told at its first use
@@ -229,6 +243,12 @@ void unknown_name_of(Elaboration& e, const std::string& text, Span span, bool in
                         "Capital and small letters are different names.", fmt::format("Did you mean `{}`?", other));
     return;
   }
+  if (is_library(text)) {
+    e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text),
+                        "Functions of the language stand by themselves.",
+                        fmt::format("Leave out `{}.`: sin(x), not {}.sin(x).", text, text));
+    return;
+  }
   if (const syntax::Spelling right = syntax::right_spelling(text, names); !right.text.empty()) {
     e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text), right.reason,
                         fmt::format("Write {}.", right.text));
@@ -245,7 +265,7 @@ void unknown_name_of(Elaboration& e, const std::string& text, Span span, bool in
   const std::string function = in_formula && near.empty() ? near_function(text) : "";
   e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text),
                       "Every name of a formula is declared somewhere in the model.",
-                      advice_on_name(e, text, near, span.source == 0) +
+                      advice_on_name(e, text, near, span.source == 0) + or_a_unit(e, text) +
                           (function.empty() ? "" : fmt::format(" Did you mean `{}`?", function)));
 }
 

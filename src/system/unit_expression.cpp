@@ -36,6 +36,12 @@ std::string unit_meant(const std::string& word, std::span<const std::string> can
     if (spelled == word) return fmt::format("Write {}.", letters);
   if (const std::string apart = word.size() <= 8 ? units_apart(word) : ""; !apart.empty())
     return fmt::format("Write {}: units of a product stand apart.", apart);
+  if ((word[0] == 'x' || word[0] == 'X') && word == word.substr(0, 1) + "10")
+    return "A power of ten is written 2e3 or 2*10^3.";
+  const std::size_t digits = word.find_first_of("0123456789");
+  if (digits != std::string::npos && digits > 0 && find_unit(word.substr(0, digits)) &&
+      word.find_first_not_of("0123456789", digits) == std::string::npos)
+    return fmt::format("Write {}^{}.", word.substr(0, digits), word.substr(digits));
   const std::string near = did_you_mean(word, candidates);
   return near.empty() ? "" : fmt::format("Did you mean `{}`?", near);
 }

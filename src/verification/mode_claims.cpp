@@ -208,7 +208,9 @@ void ModeClaims::judge_frequencies(const expectation::Frequencies& e, const Moda
     return;
   }
   if (actual.size() != expected.size()) {
-    result.message = fmt::format("{} frequencies are expected, there are {}.", expected.size(), actual.size());
+    result.message = fmt::format("{} {} expected, there {} {}.", expected.size(),
+                                 expected.size() == 1 ? "frequency is" : "frequencies are",
+                                 actual.size() == 1 ? "is" : "are", actual.size());
     return;
   }
   double worst = 0;
@@ -234,6 +236,14 @@ void ModeClaims::judge_frequencies(const expectation::Frequencies& e, const Moda
   result.passed = worst <= 1;
   result.message = result.passed ? fmt::format("residual of the eigenvalue problem {:.1e}", analysis.residual)
                                  : "A frequency is off by more than the tolerance.";
+  const double turn = 2 * std::acos(-1.0);
+  const auto in_turns = [&](std::size_t i) {
+    return expected[i] != 0 && std::abs(actual[i].value / (turn * expected[i]) - 1) < 1e-3;
+  };
+  bool all_in_turns = !result.passed && !e.squared && !actual.empty();
+  for (std::size_t i = 0; i < actual.size(); ++i) all_in_turns = all_in_turns && in_turns(i);
+  if (all_in_turns)
+    result.message += " What is expected is f = ω/(2π), in turns a second: as a number of Hz, else times 2π.";
 }
 
 void ModeClaims::judge_stability(const expectation::Equilibrium& e, const ModalEntry& entry,
