@@ -108,6 +108,10 @@ TEST_CASE("one moment as SVG, PNG and PDF") {
   REQUIRE(maup({"animate", model, "--still", "1s", "--size", "400x300", "-o", svg}).code == 0);
   CHECK(contains(read(svg), "t = 1.0"));
   CHECK_FALSE(contains(read(svg), "<animate"));
+  for (const char* duration : {"2s", "3s", "700ms"}) {  // half a second is no whole number of thousandths of the others
+    REQUIRE(maup({"animate", model, "--still", "0.5s", "--duration", duration, "-o", svg}).code == 0);
+    CHECK((contains(read(svg), "t = 0.500 s") || contains(read(svg), "t = 500.0 ms")));
+  }
   REQUIRE(maup({"animate", model, "--still", "1s", "--size", "400x300", "-o", png, "--dark"}).code == 0);
   CHECK(read(png).substr(1, 3) == "PNG");
   CHECK(big_endian(read(png), 16) == 800);  // two pixels each

@@ -35,7 +35,8 @@ std::string still_svg(const Drawing& drawing, Film& film) {
   if (!film.height_given) film.picture.height = fitting_height(drawing, film.picture.width);
   const double duration = std::abs(drawing.times.back() - drawing.times.front()), elapsed = film.elapsed.front();
   film.picture.trail_time = 3 * pleasant_speed(duration);
-  double step = duration / 1000;  // or as fine as the moment was asked for
+  // A power of ten, or as fine as the moment was asked for: 0.5 s is no whole number of thousandths of 3 s.
+  double step = std::pow(10, std::floor(std::log10(duration / 1000)));
   while (step > 1e-9 * duration && std::abs(std::remainder(elapsed, step)) > 1e-6 * step) step /= 10;
   film.picture.caption = caption(drawing, elapsed, step, film.picture);
   return frame_svg(drawing, elapsed, film.picture);
