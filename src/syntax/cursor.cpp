@@ -120,6 +120,9 @@ Name ExpressionParser::new_name(std::string_view what) {
          fmt::format("Choose another name, for example {}1 or {}_0.", token.text, token.text));
   }
   if (peek(1).is("'")) {
+    if (previous().is("system") && !peek(1).attached)
+      fail("E0111", peek(1).span, "a prime opens no title", "A title stands between two \" on one line.",
+           "Write system NAME \"Title\".");
     fail("E0111", cover(token.span, peek(1).span), fmt::format("`{}'` cannot be declared", token.text),
          "A prime is the time derivative of a name that is declared elsewhere.",
          fmt::format("Declare {}.", token.text));

@@ -500,6 +500,12 @@ constexpr CodeEntry kEntries[] = {
      "A link has a length and a direction, from one place to another one.",
      "coord x : length\nparam m = 1 kg, k = 1 N/m\npoint P mass m at (x, 0)\nspring P - P stiffness k\n",
      "coord x : length\nparam m = 1 kg, k = 1 N/m\npoint P mass m at (x, 0)\nspring O - P stiffness k\n"},
+    {"W0442", "an energy is counted twice",
+     "Points and bodies with a mass give T by themselves, springs V. What `+=` adds to them is a further part; "
+     "the same "
+     "part once more doubles it.",
+     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, 0)\nT += 1/2 m x'^2\n",
+     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, 0)\n"},
     {"E0436", "gravity, or a damping coefficient, depends on the motion",
      "`gravity` is one vector for all bodies, whose weights m g come from the potential −m g·r; a field that differs "
      "from place to place has a potential of its own. A damper is D = ½ c ṡ², which gives the force c ṡ only where c "

@@ -144,9 +144,12 @@ void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Stateme
     return;
   }
   const Declaration& first = declarations_[found->second];
-  diagnostics_.error("E0202", name.span, fmt::format("`{}` is declared twice", name.text),
-                     fmt::format("It is already a {} in line {}.", word_of(first.kind), texts_.locate(first.span).line),
-                     "Give one of them another name.");
+  const std::string_view word = word_of(first.kind);
+  const bool vowel = std::string_view("aeiou").find(word[0]) != std::string_view::npos;
+  diagnostics_.error(
+      "E0202", name.span, fmt::format("`{}` is declared twice", name.text),
+      fmt::format("It is already {} {} in line {}.", vowel ? "an" : "a", word, texts_.locate(first.span).line),
+      "Give one of them another name.");
 }
 
 Declaration* SymbolTable::find(const std::string& name) {

@@ -217,6 +217,7 @@ Expr condition(Elaboration& e, const Expression& left_side, const Expression& ri
   place.inline_constants = true;
   const Value right =
       scalar_of(e, right_side, left.dimension, fmt::format("`{}`", e.texts.slice(left_side.span)), place);
+  if (!right.poisoned) warn_of_degrees(e, right, left.dimension, right_side);
   if (right.poisoned || refuse_along_motion(e, left, left_side) || refuse_along_motion(e, right, right_side)) return {};
   return left.scalar() - right.scalar();
 }

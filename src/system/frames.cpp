@@ -13,6 +13,7 @@ using Kind = Declaration::Kind;
 std::optional<Expr> angle_of(Elaboration& e, const syntax::Expression& x, int& order) {
   const Value v = scalar_of(e, x, dimensions::angle(), "an angle");
   if (v.poisoned) return std::nullopt;
+  warn_of_degrees(e, v, dimensions::angle(), x);
   if (v.order > 0) {
     e.diagnostics.error("E0401", culprit_of_order(e, x, 1), "a velocity stands in an angle of rotation",
                         "A rotation depends on the coordinates and on time alone.", "");

@@ -84,6 +84,7 @@ void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics
   lint_rules::values(subject);
   lint_rules::total_derivatives(subject);
   lint_rules::gravity_twice(subject);
+  lint_rules::parts_twice(subject);
   lint_rules::energies_without_velocity(subject);
   lint_rules::negative_dissipation(subject);
   lint_rules::names_printed_alike(subject);

@@ -46,6 +46,8 @@ bool claims(Subject& s);
 void total_derivatives(Subject& s);
 /// W0413: weight enters by `gravity` and again by V.
 void gravity_twice(Subject& s);
+/// W0442: `T += …` or `V += …` says again what a point, a body or a spring gives.
+void parts_twice(Subject& s);
 /// W0421: T without a velocity; W0422: D without a velocity.
 void energies_without_velocity(Subject& s);
 /// W0419: the D that is written feeds energy in, wherever it was looked at.

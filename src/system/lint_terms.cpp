@@ -141,6 +141,42 @@ void gravity_twice(Subject& s) {
   }
 }
 
+namespace {
+
+/// The first of `parts` that `written` says again; of masses all together, too.
+void tell_again(Subject& s, const std::vector<EnergyTerm>& terms, const char* written, const char* help) {
+  constexpr std::size_t most_parts = 50;
+  std::vector<const EnergyTerm*> parts;
+  Expr all = s.system.context->number(0);
+  for (const EnergyTerm& t : terms)
+    if (t.origin != "T" && t.origin != "V" && t.origin.rfind("gravity", 0) != 0)
+      parts.push_back(&t), all = all + t.value;
+  if (parts.empty() || parts.size() > most_parts) return;
+  const auto is_same = [&](const Expr& x, const Expr& y) {
+    const Expr difference = expand_time_derivatives(x - y);
+    return zero_test({&difference, 1}).verdict == Verdict::Zero;
+  };
+  for (const EnergyTerm& t : terms) {
+    if (t.origin != written) continue;
+    const auto again =
+        std::find_if(parts.begin(), parts.end(), [&](const EnergyTerm* p) { return is_same(t.value, p->value); });
+    if (again == parts.end() && !is_same(t.value, all)) continue;
+    s.diagnostics.warning("W0442", t.span, "this energy is counted twice",
+                          again == parts.end()
+                              ? fmt::format("It is the {} that the statements before it give.", written)
+                              : fmt::format("The model has it already: {}.", (*again)->origin),
+                          help);
+  }
+}
+
+}  // namespace
+
+void parts_twice(Subject& s) {
+  tell_again(s, s.system.kinetic, "T",
+             "Remove it: points and bodies with a mass give their kinetic energy by themselves.");
+  tell_again(s, s.system.potential, "V", "Remove it: springs give their potential energy by themselves.");
+}
+
 void energies_without_velocity(Subject& s) {
   for (const EnergyTerm& t : s.system.kinetic)  // where q'' stands in L, v stands in T for q'
     if (t.origin == "T" && s.system.higher.empty() && !s.system.lagrangian_given &&

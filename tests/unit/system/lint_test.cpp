@@ -162,7 +162,7 @@ TEST_CASE("what is said of a coordinate without kinetic energy fits the way T is
   const std::string masses = "No mass moves when y changes", given = "y' does not enter T";
   CHECK(told("point P mass m at (x, 0)\n").find(masses) == 0);
   CHECK(told("T = 1/2 m x'^2\n").find(given) == 0);
-  CHECK(told("point P mass m at (x, 0)\nT += 1/2 m x'^2\n").find(given) == 0);
+  CHECK(told("point P mass m at (x, 0)\nT += 3/2 m x'^2\n").find(given) == 0);
   CHECK(told("point P mass m at (x, 0)\nL += b y x'\n").find(given) == 0);
 }
 
