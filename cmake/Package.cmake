@@ -7,6 +7,8 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR Maupertuis)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${MAUPERTUIS_MAINTAINER})
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+# Each package has a summary of its own, the first line of its description; the project's would stand above it.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(package_version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -19,7 +21,8 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
-# package(<component> <name> <section> DEPENDS … RECOMMENDS … SUMMARY … DESCRIPTION …)
+# package(<component> <name> <section> DEPENDS … RECOMMENDS … SUMMARY … DESCRIPTION …). CMake would cut a description at
+# a semicolon.
 macro(package component name section)
   cmake_parse_arguments(ARG "" "DEPENDS;RECOMMENDS;SUGGESTS;SUMMARY;DESCRIPTION" "" ${ARGN})
   string(TOUPPER ${component} COMPONENT)
@@ -67,8 +70,8 @@ give the same results up to rounding.")
       DEPENDS "maupertuis (= ${package_version})" RECOMMENDS "maupertuis-llvm (= ${package_version}), xdg-utils"
       SUMMARY "Lagrangian mechanics in the browser"
       DESCRIPTION "The page that \`maup studio\` shows: write a model and see its equations,
-its motion, its conserved quantities at once; drag it, change its values,
-step through the derivation in a lecture. It is served at 127.0.0.1 alone.")
+its motion, its conserved quantities at once. Drag it, change its values, step
+through its derivation in a lecture. It is served at 127.0.0.1 alone.")
   endif()
   package(dev libmaupertuis-dev libdevel
     DEPENDS "libfmt-dev, liblapack-dev, libblas-dev" RECOMMENDS "maupertuis-llvm (= ${package_version})"

@@ -70,12 +70,25 @@ template <class R>
 Interval<R> operator-(const Interval<R>& a, const Interval<R>& b) {
   return a + (-b);
 }
+/// The least and the largest product of two numbers of these. Signs tell which ends they belong to: two products of 100
+/// digits in place of four.
+template <class R>
+Interval<R> products(const Interval<R>& a, const Interval<R>& b) {
+  const auto of = [](const R& a_low, const R& b_low, const R& a_high, const R& b_high) {
+    return Interval<R>{bounded_product(a_low, b_low), bounded_product(a_high, b_high)};
+  };
+  if (a.low >= 0) return of(b.low >= 0 ? a.low : a.high, b.low, b.high >= 0 ? a.high : a.low, b.high);
+  if (a.high <= 0) return of(b.high >= 0 ? a.low : a.high, b.high, b.low >= 0 ? a.high : a.low, b.low);
+  if (b.low >= 0) return of(a.low, b.high, a.high, b.high);
+  if (b.high <= 0) return of(a.high, b.low, a.low, b.low);
+  const Interval<R> crossed = of(a.low, b.high, a.low, b.low), others = of(a.high, b.low, a.high, b.high);
+  return {std::min(crossed.low, others.low), std::max(crossed.high, others.high)};
+}
 template <class R>
 Interval<R> operator*(const Interval<R>& a, const Interval<R>& b) {
   if (a.is_nan() || b.is_nan()) return Interval<R>::nothing();
-  const R c[] = {bounded_product(a.low, b.low), bounded_product(a.low, b.high), bounded_product(a.high, b.low),
-                 bounded_product(a.high, b.high)};
-  const R low = *std::min_element(c, c + 4), high = *std::max_element(c, c + 4);
+  const auto [low, high] = products(a, b);
+  if (low == 0 && high == 0) return {R(0), R(0)};
   // A sign is kept: an outward step across 0 would lose that squares are not negative.
   const Interval<R> wide = Interval<R>::around(low, high);
   return {low >= 0 && wide.low < 0 ? R(0) : wide.low, high <= 0 && wide.high > 0 ? R(0) : wide.high};

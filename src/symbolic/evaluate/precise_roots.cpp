@@ -106,6 +106,12 @@ struct PreciseRoots::Impl {
     }
   }
 
+  Reals unknowns_at(const Bindings& start) const {
+    Reals out;
+    for (const Expr& x : unknowns) out.push_back(Real100(start.at(x)));
+    return out;
+  }
+
   template <class Number>
   std::vector<Number> nodes_at(const Bindings& others, const Reals& at) const {
     std::vector<Number> nodes;
@@ -156,13 +162,17 @@ PreciseRoots::~PreciseRoots() = default;
 /// Newton's method with pivots from `least_pivot` on.
 class PreciseRoots::Way {
  public:
-  Way(const Impl& functions, const Bindings& start, std::span<const double> sizes, const Real100& least_pivot)
-      : functions_(functions), start_(start), sizes_(sizes.begin(), sizes.end()), least_pivot_(least_pivot) {
-    for (const Expr& x : functions.unknowns) at_.push_back(Real100(start.at(x)));
+  Way(const Impl& functions, const Bindings& start, std::span<const double> sizes, const std::vector<bool>& is_rounding,
+      const Real100& least_pivot)
+      : functions_(functions),
+        start_(start),
+        sizes_(sizes.begin(), sizes.end()),
+        least_pivot_(least_pivot),
+        at_(functions.unknowns_at(start)),
+        is_rounding_(is_rounding) {
     for (std::size_t j = 0; j < at_.size(); ++j)
       by_.push_back(sizes_[j] > 0 ? Real100(sizes_[j]) : std::max(Real100(1), Real100(abs(at_[j]))));
     from_ = at_;
-    is_rounding_ = functions.rounding_at(start, at_);
   }
 
   bool arrives(double farthest) {
@@ -231,16 +241,17 @@ class PreciseRoots::Way {
   std::vector<double> sizes_;
   Real100 least_pivot_;
   Reals at_, from_, by_;
-  std::vector<bool> is_rounding_;  // at the start
+  const std::vector<bool>& is_rounding_;  // at the start
 };
 
 std::optional<std::vector<double>> PreciseRoots::near(const Bindings& start, std::span<const double> sizes,
                                                       double farthest) const {
   // A curve of roots first: what is soft stays as it is, and the other functions have to vanish with these. Beside such
   // a curve soft pivots are rounding of squares, and would lead anywhere.
-  Way across(*impl_, start, sizes, soft_pivot);
+  const std::vector<bool> is_rounding = impl_->rounding_at(start, impl_->unknowns_at(start));
+  Way across(*impl_, start, sizes, is_rounding, soft_pivot);
   if (across.arrives(farthest) && across.leaves_no_residual()) return across.place();
-  Way whole(*impl_, start, sizes, no_pivot);
+  Way whole(*impl_, start, sizes, is_rounding, no_pivot);
   return whole.arrives(farthest) && whole.leaves_no_values_on_summits() ? std::optional(whole.place()) : std::nullopt;
 }
 
