@@ -133,32 +133,54 @@ std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n,
   return result;
 }
 
+namespace {
+
+/// [n] q̈ where the last bits of the state are other ones, those of q by a pattern of signs; nothing where it has none.
+std::vector<double> accelerations_beside(KernelWorkspace& point, double t, std::span<const double> q,
+                                         std::span<const double> v, std::size_t pattern) {
+  const std::size_t n = q.size();
+  std::vector<double> position(n), velocity(n), out(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    position[i] = q[i] * (1 + (i >> pattern & 1 ? -epsilon : epsilon));
+    velocity[i] = v[i] * (1 + epsilon);
+  }
+  if (point.evaluate(t * (1 + epsilon), position, velocity) != KernelStatus::Ok) return {};
+  for (std::size_t i = 0; i < n; ++i) out[i] = point.acceleration(i);
+  return out;
+}
+
+}  // namespace
+
 /// What a change of the state by rounding does to q̈ is asked first: mostly it is enough. Then q̈ at the state, and what
-/// rounding of the formula's values makes of it.
+/// rounding of the formula's values makes of it. Where there are too many unknowns for that, other changes of the
+/// state: each leaves some accelerations as they are by accident.
 bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial,
                              const double* half_by_equations, std::size_t step, KernelWorkspace& point, double t,
                              std::span<const double> q, std::span<const double> v, double h, Disks& disks) {
-  const std::size_t n = q.size(), m = point.program().unknowns - n;
-  std::vector<double> here(n), position(n), velocity(n), by_state(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    here[i] = 2 * half_by_equations[i * step];
-    position[i] = q[i] * (1 + (i % 2 == 0 ? epsilon : -epsilon));
-    velocity[i] = v[i] * (1 + epsilon);
-  }
-  if (point.evaluate(t * (1 + epsilon), position, velocity) != KernelStatus::Ok) return false;
-  for (std::size_t i = 0; i < n; ++i) by_state[i] = point.acceleration(i);
-  const auto add_change = [&](std::vector<double> roundings) {
-    for (std::size_t i = 0; i < n; ++i) roundings[i] += std::abs(by_state[i] - here[i]);
+  const std::size_t n = q.size(), m = point.program().unknowns - n, patterns = has_bordered_matrix(n, m) ? 1 : 4;
+  std::vector<double> here(n);
+  std::vector<std::vector<double>> beside;
+  for (std::size_t i = 0; i < n; ++i) here[i] = 2 * half_by_equations[i * step];
+  const auto add_changes = [&](std::vector<double> roundings) {
+    for (std::size_t i = 0; i < n; ++i) {
+      double largest = 0;
+      for (const std::vector<double>& a : beside) largest = std::max(largest, std::abs(a[i] - here[i]));
+      roundings[i] += largest;
+    }
     return roundings;
   };
-  if (check.agrees_but_for_rounding(by_polynomial, here, add_change(std::vector<double>(n)), h)) return true;
+  for (std::size_t pattern = 0; pattern < patterns; ++pattern) {
+    beside.push_back(accelerations_beside(point, t, q, v, pattern));
+    if (beside.back().empty()) return false;
+    if (check.agrees_but_for_rounding(by_polynomial, here, add_changes(std::vector<double>(n)), h)) return true;
+  }
   if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
   disks.set_constants(point.constants());
   disks.begin({point.coordinate(0), point.row_stride(), 1});
   for (std::size_t i = 0; i < n; ++i) here[i] = point.acceleration(i);
   return check.agrees_but_for_rounding(
       by_polynomial, here,
-      add_change(acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon)), h);
+      add_changes(acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon)), h);
 }
 
 }  // namespace maupertuis::taylor

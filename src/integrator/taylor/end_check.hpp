@@ -36,13 +36,14 @@ class EndCheck {
   std::vector<double> rates_;
 };
 
-/// B = ∂R/∂(q̈, λ) at the point that a workspace holds, [(n + m)²]; empty where there are too many unknowns for its
-/// inverse, which costs their third power.
+/// The inverse of the bordered matrix costs the third power of its unknowns: of many it is not asked for.
+inline bool has_bordered_matrix(std::size_t freedoms, std::size_t constraints) { return freedoms + constraints <= 64; }
+
+/// B = ∂R/∂(q̈, λ) at the point that a workspace holds, [(n + m)²]; empty where it is not asked for.
 template <class Work>
 std::vector<double> bordered_matrix(const Work& work, std::size_t freedoms, std::size_t constraints) {
-  constexpr std::size_t most = 64;
   const std::size_t n = freedoms, unknowns = freedoms + constraints;
-  if (unknowns > most) return {};
+  if (!has_bordered_matrix(n, constraints)) return {};
   std::vector<double> b(unknowns * unknowns, 0.0);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) b[i * unknowns + j] = static_cast<double>(work.mass(i, j));
