@@ -2,6 +2,8 @@
 
 #include "kernel/extended/close_constants.hpp"
 
+#include <algorithm>
+
 namespace maupertuis::workspace {
 
 Expansion::Expansion(const Kernel& k, int p)
@@ -57,9 +59,17 @@ void Expansion::bind() {
   };
 }
 
+/// A motion that goes to and fro between a few sides has their constants already.
 bool Expansion::compute_constants() {
+  constexpr std::size_t most_known = 8;
   if (!stale) return false;
-  extended::compute_close_constants(program, parameters, sides, memory.constants);
+  if (const auto known = known_constants.find(sides); known != known_constants.end()) {
+    std::copy(known->second.begin(), known->second.end(), memory.constants.begin());
+  } else {
+    extended::compute_close_constants(program, parameters, sides, memory.constants);
+    if (known_constants.size() < most_known)
+      known_constants.emplace(sides, std::vector<double>(memory.constants.begin(), memory.constants.end()));
+  }
   for (std::size_t i = 0; i < lane_coefficients.size(); ++i)
     lane_coefficients[i] = memory.constants[packed.coefficients[i]];
   stale = false;

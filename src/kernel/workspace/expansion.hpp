@@ -47,8 +47,9 @@ struct Expansion {
   std::vector<const Instruction*> producer;                             // [slots]
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
-  bool stale = true;     // constants to be computed
-  std::size_t unknowns;  // n + m
+  bool stale = true;                                                        // constants to be computed
+  std::map<std::vector<std::int8_t>, std::vector<double>> known_constants;  // of these parameters, by sides
+  std::size_t unknowns;                                                     // n + m
   int last_stage = 0;
 
  private:

@@ -183,6 +183,7 @@ void KernelWorkspace::set_parameters(std::span<const double> values) {
   workspace::Expansion& x = impl_->expansion;
   MAUP_REQUIRE(values.size() == x.parameters.size());
   x.parameters.assign(values.begin(), values.end());
+  x.known_constants.clear();
   x.stale = true;
 }
 
