@@ -22,9 +22,9 @@ ConstraintEquation constraint_equation(const EquationsOfMotion& equations, std::
   };
   // Both sides of the text are sums of their own within left − right.
   if (c.value.is(Kind::Sum))
-    for (std::size_t i = 0; i < c.value.size(); ++i) place_terms(c.value[i]);
+    for (std::size_t i = 0; i < c.value.size(); ++i) place_terms(with_flat_sums(c.value[i]));
   else
-    place(c.value);
+    place(with_flat_sums(c.value));
   return {equations.system->constraint_label(index), context.sum(left), context.sum(right)};
 }
 

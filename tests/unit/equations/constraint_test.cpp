@@ -66,6 +66,23 @@ TEST_CASE("a pendulum in x and y prints as in a textbook") {
   CHECK(to_latex(d.constraint_forces[0], m.equations.order) == "2\\, x\\, \\lambda_{\\mathrm{rod}}");
 }
 
+TEST_CASE("a lever from a place to a point beyond it is printed without the place") {
+  // x − (x + d cos ψ) in the text, as in v + ω × (contact − centre); the root keeps A from being multiplied out.
+  const ModelText m(R"(system lever
+param m = 1 kg, a = 20 cm
+coord x, y : length
+coord ψ : angle
+let d = sqrt(x^2 + a^2)
+T = 1/2 m (x'^2 + y'^2 + a^2 ψ'^2)
+constraint y' + ψ' (x - (x + d cos ψ)) = 0
+)");
+  const std::vector<ReadableForm> forces = readable_derivation(m.equations, false).constraint_forces;
+  CHECK(to_plain(forces.at(2), m.equations.order) == "-cos ψ sqrt(x^2 + a^2) λ");
+  const ConstraintEquation row = constraint_equation(m.equations, 0);
+  CHECK(to_plain(row.left, m.equations.order) == "y'");
+  CHECK(to_plain(row.right, m.equations.order) == "cos ψ sqrt(x^2 + a^2) ψ'");
+}
+
 TEST_CASE("A and b of the bordered system") {
   const ModelText m(pendulum);
   const ExprMatrix a = constraint_matrix(m.equations);
