@@ -112,6 +112,11 @@ TEST_CASE("one moment as SVG, PNG and PDF") {
     REQUIRE(maup({"animate", model, "--still", "0.5s", "--duration", duration, "-o", svg}).code == 0);
     CHECK((contains(read(svg), "t = 0.500 s") || contains(read(svg), "t = 500.0 ms")));
   }
+  // As many digits as the moment has, however long the run is.
+  for (const auto& [moment, caption] : {std::pair{"0.7s", "t = 0.700 s<"}, {"0.71234s", "t = 0.71234 s<"}}) {
+    REQUIRE(maup({"animate", model, "--still", moment, "--duration", "4.27s", "-o", svg}).code == 0);
+    CHECK(contains(read(svg), caption));
+  }
   REQUIRE(maup({"animate", model, "--still", "1s", "--size", "400x300", "-o", png, "--dark"}).code == 0);
   CHECK(read(png).substr(1, 3) == "PNG");
   CHECK(big_endian(read(png), 16) == 800);  // two pixels each

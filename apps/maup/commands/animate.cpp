@@ -26,7 +26,7 @@ std::string caption(const Drawing& drawing, double elapsed, double step, const F
   double factor = 1;
   for (; !drawing.dimensionless && longest > 0 && longest * factor < 1 && unit + 1 < std::size(units); ++unit)
     factor *= 1000;
-  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step * factor : 1))), 0, 9);
+  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step * factor : 1) - 1e-9)), 0, 9);
   return fmt::format("t = {:.{}f}{}{}", t * factor, digits, drawing.dimensionless ? "" : " ",
                      drawing.dimensionless ? "" : units[unit]);
 }
@@ -35,8 +35,8 @@ std::string still_svg(const Drawing& drawing, Film& film) {
   if (!film.height_given) film.picture.height = fitting_height(drawing, film.picture.width);
   const double duration = std::abs(drawing.times.back() - drawing.times.front()), elapsed = film.elapsed.front();
   film.picture.trail_time = 3 * pleasant_speed(duration);
-  // A power of ten, or as fine as the moment was asked for: 0.5 s is no whole number of thousandths of 3 s.
-  double step = std::pow(10, std::floor(std::log10(duration / 1000)));
+  // A thousandth of the run in a power of ten, or as fine as the moment was asked for.
+  double step = duration > 0 ? std::pow(10, std::floor(std::log10(duration / 1000))) : 1;
   while (step > 1e-9 * duration && std::abs(std::remainder(elapsed, step)) > 1e-6 * step) step /= 10;
   film.picture.caption = caption(drawing, elapsed, step, film.picture);
   return frame_svg(drawing, elapsed, film.picture);
