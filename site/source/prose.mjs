@@ -72,10 +72,13 @@ const letterAlone = new RegExp(
   'gu',
 );
 
-/** Variables, a letter by itself (δφ, dt, λψ) and indices of one or two: in italics, as formulas have them. */
+/**
+ * Variables, a letter by itself (δφ, dt, λψ), indices of one or two letters and those of derivatives (φ_txx): in
+ * italics, as formulas have them.
+ */
 export const italic = html =>
   html
-    .replace(/<su([bp])>(\p{L}{1,2})<\/su\1>/gu, '<su$1>\uE000$2\uE001</su$1>')
+    .replace(/<su([bp])>(\p{L}{1,2}|[txyz]{3})<\/su\1>/gu, '<su$1>\uE000$2\uE001</su$1>')
     .replace(
       letterAlone,
       (all, variation, letter, at, whole) =>

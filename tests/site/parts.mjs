@@ -8,6 +8,7 @@ import {Documents, slug} from '../../site/source/markdown.mjs';
 import {benchmarkPlots, seconds, tables} from '../../site/source/plots.mjs';
 import {relative} from '../../site/source/layout.mjs';
 import {fragmentOf, textOfFragment} from '../../site/source/studio.mjs';
+import {italic, prose} from '../../site/source/prose.mjs';
 import {one, parseXml, textOf} from '../../site/source/xml.mjs';
 
 const refuses = (action, kind) => {
@@ -26,6 +27,13 @@ export async function checkParts(check, root) {
     'indices',
     squeezed('φ_xxt p_0 λ_rod') === '\\varphi_{xxt}\\,p_{0}\\,\\lambda_{\\mathrm{rod}}',
     squeezed('φ_xx p_0 λ_rod'),
+  );
+  const sentence = italic(prose('D(φ_tx) and D(φ_txx) of p, λ_rod'));
+  check(
+    'indices in sentences are in italics as those of formulas are',
+    sentence === '<i>D</i>(<i>φ</i><sub><i>tx</i></sub>) and <i>D</i>(<i>φ</i><sub><i>txx</i></sub>) of <i>p</i>, ' +
+      '<i>λ</i><sub>rod</sub>',
+    sentence,
   );
   check('dots are those of the letter', squeezed('ξ̈ + ṗ') === '\\ddot{\\xi}+\\dot{p}', squeezed('ξ̈ + ṗ'));
   check('not equal is not equal', squeezed('a ≠ b') === 'a\\neb', squeezed('a ≠ b'));
