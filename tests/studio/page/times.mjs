@@ -89,8 +89,8 @@ async function frames(seconds) {
     each = name => ms((1000 * (after[name] - before[name])) / count);
   console.log(
     `20 links while a slider moves: ${(count / seconds).toFixed(0)} frames a second; of a frame scripts have ` +
-      `${each('ScriptDuration')}, layout ${each('LayoutDuration')}, styles ${each('RecalcStyleDuration')}, all tasks of ` +
-      `the page's thread ${each('TaskDuration')} (processor time)`,
+      `${each('ScriptDuration')}, layout ${each('LayoutDuration')}, styles ${each('RecalcStyleDuration')}, ` +
+      `all tasks of the page's thread ${each('TaskDuration')} (processor time)`,
   );
   await page.context().close();
 }
