@@ -19,7 +19,11 @@ double safe_tolerance(double tolerance) { return 1e4 * epsilon + 10 * (tolerance
 EndCheck::EndCheck(std::size_t freedoms, double tolerance)
     : allowed_(std::max(1e-12, 10 * tolerance)), rates_(freedoms, 0.0) {}
 
-void EndCheck::forget() { std::fill(rates_.begin(), rates_.end(), 0.0); }
+void EndCheck::forget() {
+  std::fill(rates_.begin(), rates_.end(), 0.0);
+  noted_.clear();
+  ends_left_ = 0;
+}
 
 void EndCheck::note_rates(const double* v, const double* half_a, std::size_t step, double h) {
   for (std::size_t i = 0; i < rates_.size(); ++i)
@@ -57,6 +61,29 @@ bool EndCheck::agrees_but_for_rounding(std::span<const double> by_polynomial, st
       return false;
   }
   return true;
+}
+
+/// Those of the look before count by half: one look leaves some accelerations as they are by accident. Near a singular
+/// mass matrix rounding is large, and of this place alone: nothing is noted.
+void EndCheck::note_roundings(std::span<const double> roundings, std::span<const double> by_equations) {
+  constexpr std::size_t ends = 7;
+  constexpr double ordinary = 1e-11;
+  double largest = std::numeric_limits<double>::min();
+  for (const double a : by_equations) largest = std::max(largest, std::abs(a));
+  noted_.resize(roundings.size(), 0.0);
+  for (std::size_t i = 0; i < roundings.size(); ++i) noted_[i] = std::max(0.5 * noted_[i], roundings[i] / largest);
+  const bool is_ordinary = std::all_of(noted_.begin(), noted_.end(), [](double r) { return r <= ordinary; });
+  ends_left_ = is_ordinary ? ends : 0;
+}
+
+bool EndCheck::agrees_as_noted(std::span<const double> by_polynomial, std::span<const double> by_equations, double h) {
+  if (ends_left_ == 0) return false;
+  --ends_left_;
+  double largest = 0;
+  for (const double a : by_equations) largest = std::max(largest, std::abs(a));
+  std::vector<double> roundings = noted_;
+  for (double& r : roundings) r *= largest;
+  return agrees_but_for_rounding(by_polynomial, by_equations, roundings, h);
 }
 
 namespace {
@@ -153,14 +180,15 @@ std::vector<double> accelerations_beside(KernelWorkspace& point, double t, std::
 
 /// What a change of the state by rounding does to q̈ is asked first: mostly it is enough. Then q̈ at the state, and what
 /// rounding of the formula's values makes of it. Where there are too many unknowns for that, other changes of the
-/// state: each leaves some accelerations as they are by accident.
-bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial,
-                             const double* half_by_equations, std::size_t step, KernelWorkspace& point, double t,
-                             std::span<const double> q, std::span<const double> v, double h, Disks& disks) {
+/// state, since each leaves some accelerations as they are by accident; what they tell is noted for the next ends.
+bool agrees_but_for_rounding(EndCheck& check, std::span<const double> by_polynomial, const double* half_by_equations,
+                             std::size_t step, KernelWorkspace& point, double t, std::span<const double> q,
+                             std::span<const double> v, double h, Disks& disks) {
   const std::size_t n = q.size(), m = point.program().unknowns - n, patterns = has_bordered_matrix(n, m) ? 1 : 4;
   std::vector<double> here(n);
   std::vector<std::vector<double>> beside;
   for (std::size_t i = 0; i < n; ++i) here[i] = 2 * half_by_equations[i * step];
+  if (check.agrees_as_noted(by_polynomial, here, h)) return true;
   const auto add_changes = [&](std::vector<double> roundings) {
     for (std::size_t i = 0; i < n; ++i) {
       double largest = 0;
@@ -172,7 +200,10 @@ bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_p
   for (std::size_t pattern = 0; pattern < patterns; ++pattern) {
     beside.push_back(accelerations_beside(point, t, q, v, pattern));
     if (beside.back().empty()) return false;
-    if (check.agrees_but_for_rounding(by_polynomial, here, add_changes(std::vector<double>(n)), h)) return true;
+    const std::vector<double> changes = add_changes(std::vector<double>(n));
+    if (!check.agrees_but_for_rounding(by_polynomial, here, changes, h)) continue;
+    if (patterns > 1) check.note_roundings(changes, here);
+    return true;
   }
   if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
   disks.set_constants(point.constants());

@@ -31,9 +31,16 @@ class EndCheck {
   bool agrees_but_for_rounding(std::span<const double> by_polynomial, std::span<const double> by_equations,
                                std::span<const double> roundings, double h) const;
 
+  /// Of many unknowns the slow look below costs more than a step. What rounding made of q̈ there, in units of the
+  /// largest, counts at the next few ends too. Of n accelerations by the equations.
+  void note_roundings(std::span<const double> roundings, std::span<const double> by_equations);
+  bool agrees_as_noted(std::span<const double> by_polynomial, std::span<const double> by_equations, double h);
+
  private:
   double allowed_;
   std::vector<double> rates_;
+  std::vector<double> noted_;  // [n], or none
+  std::size_t ends_left_ = 0;  // at which they count
 };
 
 /// The inverse of the bordered matrix costs the third power of its unknowns: of many it is not asked for.
@@ -62,8 +69,8 @@ std::vector<double> acceleration_roundings(std::vector<double> bordered, std::si
 /// The slow look at the end of a step of length h, where the quick one failed. `point` has the parameters and sides of
 /// the step; `disks` are of its program, and have its constants afterwards. half_by_equations: ½ q̈_i at [i · step]; it
 /// may be that of `point`, which is evaluated anew.
-bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial,
-                             const double* half_by_equations, std::size_t step, KernelWorkspace& point, double t,
-                             std::span<const double> q, std::span<const double> v, double h, Disks& disks);
+bool agrees_but_for_rounding(EndCheck& check, std::span<const double> by_polynomial, const double* half_by_equations,
+                             std::size_t step, KernelWorkspace& point, double t, std::span<const double> q,
+                             std::span<const double> v, double h, Disks& disks);
 
 }  // namespace maupertuis::taylor

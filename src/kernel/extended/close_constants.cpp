@@ -23,6 +23,7 @@ const Rational* written(const Program& program, const Constant& number) {
 }
 
 bool is_a_double(const Program& program, const Constant& number) {
+  if (!std::isfinite(number.value)) return true;  // beyond all doubles, where none is near
   constexpr double integers_end = 9007199254740992;
   if (std::abs(number.value) < integers_end && number.value == std::nearbyint(number.value)) return true;
   const Rational* literal = written(program, number);

@@ -1,5 +1,7 @@
 #include "../model_text.hpp"
 
+#include "equations/constraint_forms.hpp"
+
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/contact_mode.hpp>
 #include <maupertuis/evaluate.hpp>

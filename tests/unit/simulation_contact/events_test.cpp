@@ -509,6 +509,46 @@ TEST_CASE("kinks of several events at one place do not take each other's certain
   for (const Happening& h : r.happenings) CHECK(h.error < 1e-13);
 }
 
+TEST_CASE("an event at a kink stays open where forces switch too") {
+  // Stiffness 4 for x > 0 and 1 below, from rest at 0.7: no event but the crossings of x = 0.
+  const auto r = run_text(
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2 - 3/2 max(x, 0)^2\nstart x = 0.7\n"
+      "event e when x - 1 = 0 falling : set x' = -x'/2\nevent zero when abs(x*(x - 1)) = 0 : record\n",
+      9);
+  REQUIRE(count(r, Happening::Kind::Event, "zero") == 4);
+  REQUIRE(r.happenings.size() == 4);
+  const double quarter = half_turn / 4, expected[] = {quarter, 5 * quarter, 7 * quarter, 11 * quarter};
+  for (std::size_t k = 0; k < 4; ++k) CHECK(std::abs(r.happenings[k].t - expected[k]) < 1e-13);
+}
+
+TEST_CASE("a zero that was met at a kink is not met again a rounding later") {
+  // From rest at 0.5 and back: a half period of π/2 for x > 0, of π below.
+  const auto r = run_text(
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2 - 3/2 max(x, 0)^2\nstart x = 0.5\n"
+      "event e when piecewise(x < 0.5 : (x - 0.5)^2, else : x - 0.5) = 0 : set x' = x'/2\n"
+      "event beside when max(x - 0.5, 0) = 0 rising : set x' = 2*x'\n",
+      5);
+  REQUIRE(r.happenings.size() == 2);
+  CHECK(r.happenings[0].t == 0);
+  CHECK(std::abs(r.happenings[1].t - 1.5 * half_turn) < 1e-7);
+}
+
+TEST_CASE("an event that ends the run at a kink of another does so at once") {
+  // Down from x = 1 with speed 0.3 under V = |x|, and back.
+  const auto r = run_text(
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2 - abs(x)\ncontact 1 - x >= 0 restitution 1\n"
+      "start x = 1, x' = -0.3\n"
+      "event end when piecewise(x < 1 : (x - 1)^2, else : x - 1) = 0 : stop\n"
+      "event told when piecewise(x < 1 : (x - 1)^2, else : x - 1) = 0 : record\n",
+      9);
+  const double fast = std::sqrt(0.09 + 2), back = 2 * (fast - 0.3) + 2 * fast;
+  CHECK(r.ending == Ending::Stopped);
+  CHECK(std::abs(r.final.t - back) < 1e-9);
+  for (const char* name : {"end", "told"})
+    CHECK(std::any_of(r.happenings.begin(), r.happenings.end(),
+                      [&](const Happening& h) { return h.name == name && std::abs(h.t - back) < 1e-9; }));
+}
+
 TEST_CASE("a double root within a function whose argument rounds is met once, at its place") {
   // x + 1 touches 0 at half a turn.
   for (const char* touch : {"log(2 + x) = 0", "tan(x + 1) = 0", "tanh(x + 1) = 0", "sinh(x + 1) = 0", "exp(x + 1) = 1",
