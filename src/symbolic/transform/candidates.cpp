@@ -117,10 +117,9 @@ Expr CandidateChooser::search_best(const Polynomial& p) {
       consider(choice, by_velocities(form));
     if (const Expr collected = by_one_parameter(form, false)) consider(choice, collected);
   };
-  if (is_parametric(p)) {  // no angles, no coordinates: only the factors are open
+  if (is_parametric(p)) {  // no angles, no coordinates: only the factoring is open
     consider(choice, by_functions(p));
     if (const Expr collected = by_one_parameter(p, false)) consider(choice, collected);
-    consider(choice, flat(p));  // 1 - v^2, not -(v^2 - 1)
     return choice.value;
   }
   offer_all(p);

@@ -79,10 +79,10 @@ T = 1/2 m (x'^2 + y'^2 + a^2 ψ'^2)
 constraint y' + ψ' (x - (x + d cos ψ)) = 0
 )");
   const std::vector<ReadableForm> forces = readable_derivation(m.equations, false).constraint_forces;
-  CHECK(to_plain(forces.at(2), m.equations.order) == "-cos ψ sqrt(x^2 + a^2) λ");
+  CHECK(to_plain(forces.at(2), m.equations.order) == "-sqrt(a^2 + x^2) cos ψ λ");
   const ConstraintEquation row = constraint_equation(m.equations, 0);
   CHECK(to_plain(row.left, m.equations.order) == "y'");
-  CHECK(to_plain(row.right, m.equations.order) == "cos ψ sqrt(x^2 + a^2) ψ'");
+  CHECK(to_plain(row.right, m.equations.order) == "sqrt(a^2 + x^2) cos ψ ψ'");
 }
 
 TEST_CASE("A and b of the bordered system") {
