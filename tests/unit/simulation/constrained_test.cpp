@@ -174,7 +174,7 @@ TEST_CASE("a written start is kept, the rest moves; contradictions move with a w
 
   ModelText just_off(std::string(cartesian) + "start x = 1.00000001 m, y = 0 m\n");
   REQUIRE(consistent_start(just_off.model, just_off.equations, just_off.diagnostics));
-  CHECK(just_off.diagnostics.items()[0].message.find("x from 1.00000001 to 1 (") != std::string::npos);
+  CHECK(just_off.diagnostics.items()[0].message.find("x from 1.00000001 to 1 m") != std::string::npos);
 
   ModelText exact(std::string(cartesian) + "start exactly x = 1.2 m, y = 0.5 m\n");
   CHECK(!consistent_start(exact.model, exact.equations, exact.diagnostics));
