@@ -3,9 +3,13 @@
 #include "fields/field_sides.hpp"
 #include "fields/start_fit.hpp"
 
+#include <maupertuis/repeated_evaluation.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <span>
 #include <utility>
 
 namespace maupertuis {
@@ -111,45 +115,75 @@ std::optional<CoupledRun> sharper_run(const SemiDiscrete& fine, const CoupledPro
   return mesh ? run_once(*mesh, p.questions, p.width, options, unheard) : std::nullopt;
 }
 
-/// The largest |u| (|u'|) of a field in the states that a run is asked about, at its start and at its end.
-double largest_in(const SimulationResult& run, const SemiDiscrete& mesh, std::size_t varied_index, int by_time) {
-  std::vector<const State*> states{&run.start, &run.final};
-  for (const State& s : run.at) states.push_back(&s);
-  double out = 0;
-  for (const State* s : states)
-    if (!s->q.empty()) out = std::max(out, mesh.largest_value(varied_index, by_time, *s));
-  return out;
-}
-
-/// By how much a question changes with the value at a place, at the end of a run; 1 where that is not finite.
-double weight_of(const PlaceValue& place, const FieldQuestion& question, const SemiDiscrete& mesh, const State& end) {
-  Diagnostics unheard;
-  const Expr slope = mesh.discretised({differentiate(question.value, place.symbol), false, question.time}, unheard);
-  const double weight = slope ? std::abs(mesh.value_in(slope, end)) : 1;
-  return std::isfinite(weight) ? weight : 1;
-}
-
-/// What an answer feels of rounding beside its own size, as felt_rounding of fields without bodies.
-double felt_rounding(const CoupledRun& run, const SemiDiscrete& mesh, const FieldEquations& equations,
-                     std::size_t answer, const FieldQuestion& question) {
-  double out = std::abs(run.answers[answer]);
-  if (question.total) return out;
-  const FieldSystem& s = equations.system();
-  double width = mesh.borders().back() - mesh.borders().front();
-  for (std::size_t i = 1; i < mesh.borders().size(); ++i)
-    width = std::min(width, mesh.borders()[i] - mesh.borders()[i - 1]);
-  const std::vector<Expr> asked = symbols_of({&question.value, 1});
-  for (const PlaceValue& place : equations.model->places) {
-    if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
-    const FieldJet jet = *s.jet_of(place.jet);
-    const double weight = weight_of(place, question, mesh, run.result.final);
-    const std::size_t varied = equations.varied_index(jet.field);
-    if (varied == equations.varied.size()) continue;  // it is given
-    out += weight * largest_in(run.result, mesh, varied, jet.time > 0 ? 1 : 0) *
-           std::pow(mesh.order() * mesh.order() / width, jet.order() - jet.time);
+/// What answers feel of rounding beside their own size, as felt_rounding of fields without bodies; by the states that a
+/// run is asked about, its start and its end.
+class FeltRounding {
+ public:
+  FeltRounding(const CoupledRun& run, const SemiDiscrete& mesh, const FieldEquations& equations)
+      : run_(run), mesh_(mesh), equations_(equations), width_(mesh.borders().back() - mesh.borders().front()) {
+    for (std::size_t i = 1; i < mesh.borders().size(); ++i)
+      width_ = std::min(width_, mesh.borders()[i] - mesh.borders()[i - 1]);
+    std::vector<const State*> states{&run.result.start, &run.result.final};
+    for (const State& s : run.result.at) states.push_back(&s);
+    for (const State* s : states)
+      if (!s->q.empty()) states_.push_back(mesh.bindings_at(*s));
   }
-  return out;
-}
+
+  double of(std::size_t answer, const FieldQuestion& question) {
+    double out = std::abs(run_.answers[answer]);
+    if (question.total) return out;
+    const std::vector<Expr> asked = symbols_of({&question.value, 1});
+    for (const PlaceValue& place : equations_.model->places) {
+      if (std::find(asked.begin(), asked.end(), place.symbol) == asked.end()) continue;
+      const FieldJet jet = *equations_.system().jet_of(place.jet);
+      const std::size_t varied = equations_.varied_index(jet.field);
+      if (varied == equations_.varied.size()) continue;  // it is given
+      out += weight_of(place, question) * largest(varied, jet.time > 0 ? 1 : 0) *
+             std::pow(mesh_.order() * mesh_.order() / width_, jet.order() - jet.time);
+    }
+    return out;
+  }
+
+ private:
+  /// The largest of some expressions in all states; what has no value does not count.
+  double largest_of(std::span<const Expr> values) const {
+    const RepeatedEvaluation evaluation(values);
+    double out = 0;
+    for (const Bindings& state : states_)
+      for (const double v : evaluation([&](Expr symbol) { return state.at(symbol); }))
+        if (std::isfinite(v)) out = std::max(out, std::abs(v));
+    return out;
+  }
+
+  /// By how much a question changes with the value at a place.
+  double weight_of(const PlaceValue& place, const FieldQuestion& question) const {
+    const Expr slope = differentiate(question.value, place.symbol);
+    if (slope.is_number()) return std::abs(slope.number().to_double());
+    Diagnostics unheard;
+    const Expr value = mesh_.discretised({slope, false, question.time}, unheard);
+    return value ? largest_of({&value, 1}) : 1;
+  }
+
+  /// |u| or |u'| of a field, at the ends and quarters of elements.
+  double largest(std::size_t varied, int by_time) {
+    const auto [known, is_new] = largest_.try_emplace({varied, by_time}, 0);
+    if (!is_new) return known->second;
+    constexpr double parts[] = {0, 0.25, 0.5, 0.75, 1};
+    std::vector<Expr> values;
+    for (std::size_t e = 0; e + 1 < mesh_.borders().size(); ++e)
+      for (const double part : parts)
+        values.push_back(mesh_.value_at(varied, by_time, 0,
+                                        mesh_.borders()[e] + part * (mesh_.borders()[e + 1] - mesh_.borders()[e])));
+    return known->second = largest_of(values);
+  }
+
+  const CoupledRun& run_;
+  const SemiDiscrete& mesh_;
+  const FieldEquations& equations_;
+  double width_;  // of the narrowest element
+  std::vector<Bindings> states_;
+  std::map<std::pair<std::size_t, int>, double> largest_;  // by field and order in time
+};
 
 /// How many happenings of a run another mesh has too: the same ones, in the same order, and after about the same time
 /// since the one before. Where a mesh rattles at a contact these times are those of its elements.
@@ -244,8 +278,8 @@ std::vector<double> coupled_errors(const CoupledRun& fine, const SemiDiscrete& m
   if (!other.sharp && gain > 0 && !p.breaks)
     for (double& e : out) e *= 2;
   const double rounding = 2.2e-16 * std::sqrt(static_cast<double>(fine.result.statistics.steps) + 1);
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] += rounding * std::max(felt_rounding(fine, mesh, p.equations, i, p.questions[i]), 1e-300);
+  FeltRounding felt(fine, mesh, p.equations);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] += rounding * std::max(felt.of(i, p.questions[i]), 1e-300);
   return out;
 }
 

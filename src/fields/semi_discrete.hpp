@@ -58,10 +58,8 @@ class SemiDiscrete {
   };
   /// `begin`: the coordinates of the run at its start; nothing where there is none.
   std::vector<MovedStart> moved_starts(const State& begin) const;
-  /// Of an expression in the coordinates, their rates, t and parameters, SI.
-  double value_in(Expr value, const State& state) const;
-  /// The largest |u| (|u'|) of a field at the ends and quarters of elements.
-  double largest_value(std::size_t varied_index, int by_time, const State& at) const;
+  /// Parameters, t, the coordinates and their rates, SI.
+  Bindings bindings_at(const State& state) const;
   /// Names of events that end a run: a place that moves left the domain.
   const std::vector<std::string>& departures() const { return departures_; }
   /// Whether elements are left that have no inertia: they do not follow what they carry by linear forces.
@@ -99,7 +97,7 @@ class SemiDiscrete {
                    std::vector<std::optional<double>>& kept) const;
   void add_start(std::size_t a, int order, bool is_written, const std::vector<double>& coefficients);
   MovedStart most_moved(std::size_t a, int order, const WrittenStart& start, const State& begin) const;
-  Bindings bindings_at(const State& state) const;
+  double value_in(Expr value, const State& state) const;
   /// Whether bodies give mass to a coordinate of theirs, such as the value of a field at a place.
   bool has_inertia(const Coordinate& c) const;
   bool refuse_starts_of_places(Diagnostics& diagnostics) const;

@@ -35,8 +35,7 @@ namespace {
 using Side = BoundaryCondition::Side;
 using Kept = std::vector<std::optional<double>>;  // by degree of freedom
 
-constexpr double places_of_element[] = {0, 0.25, 0.5, 0.75, 1};  // where fields are looked at
-constexpr double rounding_of_zero = 4e-16;                       // of the size of a start: what sin π is beside 1
+constexpr double rounding_of_zero = 4e-16;  // of the size of a start: what sin π is beside 1
 
 double largest(const std::vector<double>& values) {
   double out = 0;
@@ -205,9 +204,10 @@ std::vector<SemiDiscrete::MovedStart> SemiDiscrete::moved_starts(const State& be
 /// Where a field is farthest from what is written.
 SemiDiscrete::MovedStart SemiDiscrete::most_moved(std::size_t a, int order, const WrittenStart& start,
                                                   const State& begin) const {
+  constexpr double places[] = {0, 0.25, 0.5, 0.75, 1};  // of an element
   MovedStart out{a, order, 0, 0, 0};
   for (std::size_t e = 0; e < elements(); ++e)
-    for (const double part : places_of_element) {
+    for (const double part : places) {
       const double x = mesh_.borders[e] + part * (mesh_.borders[e + 1] - mesh_.borders[e]);
       const double written = start.at(x), found = value_in(value_at(a, order, 0, x), begin);
       if (std::abs(found - written) > std::abs(out.found - out.written)) out = {a, order, x, written, found};
@@ -216,17 +216,6 @@ SemiDiscrete::MovedStart SemiDiscrete::most_moved(std::size_t a, int order, cons
 }
 
 double SemiDiscrete::value_in(Expr value, const State& state) const { return evaluate(value, bindings_at(state)); }
-
-double SemiDiscrete::largest_value(std::size_t a, int by_time, const State& state) const {
-  const Bindings at = bindings_at(state);
-  double out = 0;
-  for (std::size_t e = 0; e < elements(); ++e)
-    for (const double part : places_of_element) {
-      const double x = mesh_.borders[e] + part * (mesh_.borders[e + 1] - mesh_.borders[e]);
-      out = std::max(out, std::abs(evaluate(value_at(a, by_time, 0, x), at)));
-    }
-  return out;
-}
 
 Bindings SemiDiscrete::bindings_at(const State& state) const {
   Bindings at = numbers_;

@@ -1,6 +1,5 @@
 #include <maupertuis/transform.hpp>
 
-#include <algorithm>
 #include <unordered_set>
 
 namespace maupertuis {
@@ -11,7 +10,7 @@ class NeverNegative {
   bool operator()(Expr e) {
     if (known_.count(e) > 0) return true;
     const bool is = by_form(e);
-    if (is) known_.insert(e);  // the first that is not ends the whole
+    if (is) known_.insert(e);
     return is;
   }
 
