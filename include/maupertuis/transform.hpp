@@ -40,6 +40,10 @@ std::vector<Expr> substitute(std::span<const Expr> roots, const ExprMap& replace
 /// cosh, and sums and products of these and of numbers. False says nothing. Cost O(nodes).
 bool is_never_negative(Expr e);
 
+/// Sums in sums, with their coefficients, become one, so that equal terms join: x − (x + r) is −r. Nothing else is
+/// multiplied out. Cost O(nodes).
+Expr with_flat_sums(Expr e);
+
 /// Distributes products over sums and integer powers of sums, flattens sums, collects like terms. No trigonometry.
 /// Stops at `term_budget` terms and returns nothing (an empty handle).
 Expr expand(Expr e, std::size_t term_budget = 20000);

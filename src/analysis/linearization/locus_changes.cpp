@@ -49,11 +49,26 @@ class ChangeSearch {
     for (int k = 0; k < 60; ++k) {
       const double middle = low.parameter + (high.parameter - low.parameter) / 2;
       if (middle == low.parameter || middle == high.parameter) break;
-      const auto point = follow_.between(low, high, middle);
+      const auto point = decided_between(low, high, before, after);
       if (!point) return;
       (point->stability.verdict == before ? low : high) = *point;
     }
     locus_.changes.push_back({(low.parameter + high.parameter) / 2, branch, before, after});
+  }
+
+  /// In the middle, or where nothing is decided there, beside it: it may be one place alone, as K is singular at x = 0
+  /// of (p − p₀)² x²/2 + x⁴/4 where p is p₀, and no change.
+  std::optional<LocusPoint> decided_between(const LocusPoint& low, const LocusPoint& high, Stability before,
+                                            Stability after) {
+    constexpr double beside = 0.4;
+    const auto at = [&](double part) {
+      return follow_.between(low, high, low.parameter + part * (high.parameter - low.parameter));
+    };
+    auto point = at(0.5);
+    if (!point || follow_.in_time() || point->stability.verdict == before || point->stability.verdict == after)
+      return point;
+    const auto other = at(beside);
+    return other && (other->stability.verdict == before || other->stability.verdict == after) ? other : point;
   }
 
   /// Where a multiplier passes 1 or −1, by secants (Illinois): smooth there, while the verdict needs a multiplier that

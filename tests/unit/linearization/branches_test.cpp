@@ -121,6 +121,26 @@ TEST_CASE("each point of a branch is judged at its own parameter, next to a cros
   }
 }
 
+TEST_CASE("a value at which nothing is decided is not where the verdict changes beside it") {
+  // At a = 3 the stiffness in x vanishes, of y² it does at 3.57 and changes its sign.
+  const std::string text =
+      "dimensionless\nparam a = 1\ncoord x, y : number\n"
+      "L = 1/2 (x'^2 + y'^2) - (1/2 (a - 3)^2 x^2 + x^4/4 + 1/2 (3.57 - a) y^2 + y^4/4)\nstart x = 0.1, y = 0.2\n";
+  for (const std::size_t steps : {6, 7, 12, 60})
+    for (const bool up : {true, false}) {
+      CAPTURE(steps);
+      CAPTURE(up);
+      const Locus locus = sweep_of(text, "a", up ? 0 : 6, up ? 6 : 0, steps);
+      CHECK(locus.branches.size() == 3);
+      std::vector<StabilityChange> of_middle;
+      for (const StabilityChange& change : locus.changes)
+        if (change.branch == 0) of_middle.push_back(change);
+      REQUIRE(of_middle.size() == 1);
+      CHECK(std::abs(of_middle[0].parameter - 3.57) < 1e-10);
+      CHECK(of_middle[0].before == (up ? Stability::Energetic : Stability::Unstable));
+    }
+}
+
 TEST_CASE("folds beside a stiff link have all their digits") {
   for (const std::size_t steps : {17, 18}) {
     const Locus link = sweep_of(

@@ -76,6 +76,34 @@ TEST_CASE("rounding is allowed besides, 64 times") {
   CHECK_FALSE(step.agrees_but_for(noise, 1, -1.02 * 64 * noise));
 }
 
+TEST_CASE("what rounding made of accelerations counts at the next seven ends, and no further") {
+  const std::vector<double> a{2, 1e-5}, roundings{2e-15, 4e-13};  // of the largest: 1e-15, 2e-13
+  const auto off = [&](double by) { return std::vector<double>{a[0], a[1] + by}; };
+  EndCheck check(2, 0);
+  const double h = 1e-6;
+  CHECK_FALSE(check.agrees_as_noted(a, a, h));  // nothing is noted
+  check.note_roundings(roundings, a);
+  for (int end = 0; end < 7; ++end) {
+    const double by = end % 2 == 0 ? 0.95 * 64 * 4e-13 : 1.05 * 64 * 4e-13;
+    CHECK(check.agrees_as_noted(off(by), a, h) == (end % 2 == 0));
+  }
+  CHECK_FALSE(check.agrees_as_noted(a, a, h));
+  // In units of the largest: at ten times the accelerations ten times as much.
+  check.note_roundings(roundings, a);
+  const std::vector<double> larger{20, 1e-5};
+  CHECK(check.agrees_as_noted(std::vector<double>{20, 1e-5 + 0.95 * 64 * 4e-12}, larger, h));
+  CHECK_FALSE(check.agrees_as_noted(std::vector<double>{20, 1e-5 + 1.05 * 64 * 4e-12}, larger, h));
+  // What was noted before counts by half, until it is forgotten.
+  check.note_roundings(std::vector<double>{0, 0}, a);
+  CHECK(check.agrees_as_noted(off(0.95 * 32 * 4e-13), a, h));
+  CHECK_FALSE(check.agrees_as_noted(off(1.05 * 32 * 4e-13), a, h));
+  check.forget();
+  CHECK_FALSE(check.agrees_as_noted(a, a, h));
+  // Where it is large it belongs to a place next to a singular mass matrix.
+  check.note_roundings(std::vector<double>{0, 2.1e-11}, a);
+  CHECK_FALSE(check.agrees_as_noted(a, a, h));
+}
+
 TEST_CASE("velocities are kept until they are forgotten, and h q'' counts as one") {
   Step step(0);
   const double slow[] = {0, 0}, half[] = {0, 8};
