@@ -87,7 +87,6 @@ std::optional<Equilibrium> BranchFollower::continued(const std::vector<LocusPoin
   if (!there || is_regular(last)) return there;
   // From a singular point several ways may lead on: those on which it is a fold are branches of their own.
   const BranchWalk back = walk_from({to, *there, {}, {}, {}}, last.parameter);
-  set_parameter(to);
   return back.folds.empty() ? there : std::nullopt;
 }
 
