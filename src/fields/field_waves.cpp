@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <utility>
-
 /// Waves on a field at rest.
 namespace maupertuis {
 namespace {
@@ -104,14 +101,11 @@ std::optional<ComplexExpr> dispersion(const FieldEquations& equations, std::stri
     trouble = "The equations are not independent: part of the fields is free, a gauge, and goes with any wave.";
     return std::nullopt;
   }
-  // The sign with which it is written with fewer minus signs, and with none in front.
-  const auto minus_signs = [&](const ComplexExpr& r) {
-    const ReadableForm whole = readable(with_imaginary_unit(r), equations.order);
-    const std::string text = to_plain(field_layout(s, lay_out(whole, equations.order)));
-    return std::pair(std::count(text.begin(), text.end(), '-'), text.front() == '-');
+  const auto begins_with_minus = [&](Expr e) {
+    return to_plain(field_layout(s, lay_out(readable(e, equations.order), equations.order))).front() == '-';
   };
-  const ComplexExpr turned{-relation.re, -relation.im};
-  return minus_signs(turned) < minus_signs(relation) ? turned : relation;
+  const bool turned = begins_with_minus(relation.re.is_zero() ? relation.im : relation.re);
+  return turned ? ComplexExpr{-relation.re, -relation.im} : relation;
 }
 
 Expr with_imaginary_unit(const ComplexExpr& relation) {
