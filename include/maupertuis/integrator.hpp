@@ -74,6 +74,7 @@ class TaylorStepper {
   struct EventTreatment {
     bool ends_step = true;
     bool touches = true;  // roots without a change of sign are told too
+    int direction = 0;    // where not 0: only roots that rise (1) or fall (−1) with time end the step
   };
   /// [events]; without it each event ends the step, and touches are told.
   void treat_events(std::span<const EventTreatment> treatments);

@@ -10,13 +10,13 @@ constexpr std::size_t most_modes = 128;  // whose motions are kept
 
 }  // namespace
 
-/// Recorded events end no step.
+/// Recorded events end no step, nor do those of one direction that are passed in the other.
 void ModeMotions::treat_events(ModeMotion& motion) const {
   std::vector<TaylorStepper::EventTreatment> treatments;
   for (const Watch& w : motion.watches()) {
-    const bool is_recorded =
-        w.what == Watch::What::Event && problem_.model.experiment.events[w.index].action == ModelEvent::Action::Record;
-    treatments.push_back({!is_recorded, w.touches_count() || tells_touches_});
+    const ModelEvent* const event = w.what == Watch::What::Event ? &problem_.model.experiment.events[w.index] : nullptr;
+    const bool is_recorded = event && event->action == ModelEvent::Action::Record;
+    treatments.push_back({!is_recorded, w.touches_count() || tells_touches_, event ? event->direction : 0});
   }
   motion.stepper->treat_events(treatments);
 }

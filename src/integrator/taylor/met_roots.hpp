@@ -57,6 +57,13 @@ class Kinks {
   }
   bool ends_step(std::size_t event) const { return treatments_.empty() || treatments_[event].ends_step; }
   bool tells_touches(std::size_t event) const { return treatments_.empty() || treatments_[event].touches; }
+  /// Whether a root ends the step at which the event changes sign this way (1: it rises along the step, −1: it falls,
+  /// 0: a touch). `forwards`: time grows along the step.
+  bool ends_step(std::size_t event, int way, bool forwards) const {
+    if (treatments_.empty()) return true;
+    const TaylorStepper::EventTreatment& treatment = treatments_[event];
+    return treatment.ends_step && (treatment.direction == 0 || way == (forwards ? 1 : -1) * treatment.direction);
+  }
 
   /// Where the step comes to switches, and goes on beyond them: the events that read these have another formula there.
   bool ends_at_switch(const MetRoots<T>& met) const;

@@ -27,6 +27,17 @@ struct ExpansionOfWatched {
   std::size_t stride() const { return work.row_stride(); }
 };
 
+/// Beyond a root of an event that the step goes on from: the place from where its search goes on, up to `until`.
+double go_beyond(const RootOf<double>& root, double from, double until, Watched& watched) {
+  const bool touch = root.kind == RootKind::Touching;
+  const auto beyond = static_cast<std::int8_t>(touch ? watched.side : -watched.side);
+  const double past = std::max(root.x, std::nextafter(from, 1.0)), hidden_until = root.x + root.hidden;
+  watched = {touch ? beyond : std::int8_t{0}, true, root.order};
+  if (!(hidden_until < until)) return past;
+  if (root.hidden > 0) watched = {beyond, false};
+  return std::max(past, hidden_until);  // what lies between is not told from zero
+}
+
 }  // namespace
 
 WatchedFunctions::WatchedFunctions(const Kernel& kernel, const KernelWorkspace& work)
@@ -92,32 +103,53 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   return out;
 }
 
+/// The first root in (from, limit] at which this event ends the step. Roots before it that do not end the step are told
+/// by `pass`, when it is known where the step ends.
+void WatchedFunctions::note_first(const KernelWorkspace& work, std::size_t event, double h, double from, double limit,
+                                  Crossing& out) {
+  const std::size_t i = switches.size() + event;
+  Watched& watched = searched_[event];
+  const auto ends = [&](int way) {
+    const bool yes = kinks_.ends_step(event, way, h > 0);
+    if (!yes) passes_[event] = true;
+    return yes;
+  };
+  if (from == 0 && !roots_->is_clear(i)) {
+    const double hidden = watched.hidden / std::abs(h);
+    const auto way = root_at_begin(work, event, h, watched);
+    if (way && ends(*way)) out.note({0.0, RootKind::Crossing, 0, watched.order, hidden}, i, together_, *way);
+  }
+  // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not resolve.
+  for (;;) {
+    const double beyond = std::max(together_, unresolved);
+    const double until = std::min({roots_->window(), limit, out.x * (1 + together_) + beyond});
+    if (!(from < until)) return;
+    const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
+    if (!root) {
+      if (roots_->lost() && *roots_->lost() < out.x) out.end_where_lost(*roots_->lost());
+      return;
+    }
+    const int way = root->kind == RootKind::Touching ? 0 : -watched.side;
+    if (ends(way)) return out.note(*root, i, together_, way);
+    from = go_beyond(*root, from, until, watched);
+  }
+}
+
 /// The first roots in (from, limit].
 void WatchedFunctions::search_part(const KernelWorkspace& work, double h, double from, double limit, Crossing& out) {
-  const std::size_t count = switches.size();
-  for (std::size_t i = 0; i < out.after.size(); ++i) {
-    const bool is_switch = i < count;
+  for (std::size_t i = 0; i < switches.size(); ++i) {
     Watched& watched = out.after[i];
-    if (is_switch && watched.side == 0 && !std::isnan(work.switch_function(i, 0))) continue;  // it vanishes
-    if (!is_switch && !ends_step(i - count)) continue;
-    if (from == 0 && !is_switch && !roots_->is_clear(i)) {
-      const double hidden = watched.hidden / std::abs(h);
-      if (const auto way = root_at_begin(work, i - count, h, watched))
-        out.note({0.0, RootKind::Crossing, 0, watched.order, hidden}, i, together_, *way);
-    }
-    // Events at one instant are all told: the search goes on beyond the first root by what a polynomial does not
-    // resolve.
-    const double beyond = is_switch ? together_ : std::max(together_, unresolved);
-    const double until = std::min({roots_->window(), limit, out.x * (1 + together_) + beyond});
-    const bool touches = !is_switch && tells_touches(i - count);
-    if (const auto root = roots_->first(i, watched, from, until, touches, is_switch)) {
-      const bool jump = root->kind == RootKind::Jump;
+    if (watched.side == 0 && !std::isnan(work.switch_function(i, 0))) continue;  // it vanishes
+    const double until = std::min({roots_->window(), limit, out.x * (1 + together_) + together_});
+    if (const auto root = roots_->first(i, watched, from, until, false, true)) {
       out.note(*root, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side);
-      if (jump) watched = {root->after, false};
+      if (root->kind == RootKind::Jump) watched = {root->after, false};
     } else if (roots_->lost() && *roots_->lost() < out.x) {
       out.end_where_lost(*roots_->lost());
     }
   }
+  for (std::size_t event = 0; event < events.size(); ++event)
+    if (ends_step(event)) note_first(work, event, h, from, limit, out);
 }
 
 /// The first roots beyond `from`. Where those of the step before came early in a step as long as this one, part by
@@ -127,6 +159,9 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
   constexpr double grows = 4, early = 1.0 / 16, shortest = 1e-6;
   out.x = roots_->window();
   const std::size_t count = switches.size();
+  const std::vector<Watched> begins(out.after.begin() + static_cast<std::ptrdiff_t>(count), out.after.end());
+  searched_ = begins;
+  passes_.assign(events.size(), false);
   double part = grows * last_found_ / std::abs(h);
   if (!(part > shortest && part < early)) part = 1;
   for (double begin = from, limit = from + part;; begin = limit, part *= grows, limit += part) {
@@ -134,6 +169,8 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
     if (out.found || out.is_lost || !(limit < roots_->window())) break;
   }
   last_found_ = out.found ? (out.x - from) * std::abs(h) : 0;
+  for (std::size_t event = 0; event < events.size(); ++event)
+    if (ends_step(event) && !passes_[event]) out.after[count + event] = searched_[event];
   kinks_.leave_open(*roots_, events, h, together_, out);
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && out.x == 0; ++i) out.after[i].at_zero = switches[i].at_zero;
@@ -145,7 +182,7 @@ void WatchedFunctions::search(const KernelWorkspace& work, double h, double from
     else
       watched = {0, true, root.order};
   }
-  pass(work, h, from, out);
+  pass(work, h, from, begins, out);
 }
 
 /// A switch alone that nothing of the motion reads, within the step.
@@ -173,9 +210,10 @@ bool WatchedFunctions::turns_unread(const KernelWorkspace& work, double h, Cross
   return true;
 }
 
-/// Roots of events that do not end the step, up to its end: each search goes on from the root before. One at a switch,
-/// at which nothing else ends the step, is left open.
-void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, Crossing& out) {
+/// Roots that do not end the step, up to its end: each search goes on from the root before. One at a switch, at which
+/// nothing else ends the step, is left open. begins: the events as the search began.
+void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin, std::span<const Watched> begins,
+                            Crossing& out) {
   const std::size_t count = switches.size();
   const bool may_go_on = is_unread(out), at_switch = kinks_.ends_at_switch(out);
   const bool leaves_open = at_switch && !kinks_.ends_by_event(out);
@@ -184,9 +222,10 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
   const double until = std::min(roots_->window(), out.found && !may_go_on ? last : out.x);
   std::vector<bool> vanishes;  // as the step ends
   for (std::size_t event = 0; event < events.size(); ++event) {
-    if (ends_step(event) || kinks_.stays_at_zero(events[event], out, together_)) continue;
     const std::size_t i = count + event;
-    Watched& watched = out.after[i];
+    const bool is_told = ends_step(event) && out.holds(i);  // as what ends the step
+    if ((ends_step(event) && !passes_[event]) || kinks_.stays_at_zero(events[event], out, together_)) continue;
+    Watched watched = begins[event];
     const auto is_at_end = [&](double x, double hidden) { return x + hidden >= out.x * (1 - together_) - together_; };
     bool is_told_at_end = false;
     const auto note_root = [&](double x, int direction, double hidden = 0, std::uint8_t order = 1) {
@@ -195,8 +234,9 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
     };
     if (begin == 0 && !roots_->is_clear(i)) {
       const double hidden = watched.hidden / std::abs(h);
-      if (const auto way = root_at_begin(work, event, h, watched); way && (*way != 0 || tells_touches(event)))
-        note_root(0, *way, hidden, watched.order);
+      const auto way = root_at_begin(work, event, h, watched);
+      if (way && is_told && kinks_.ends_step(event, *way, h > 0)) continue;
+      if (way && (*way != 0 || tells_touches(event))) note_root(0, *way, hidden, watched.order);
     }
     for (double from = begin; from < until;) {
       const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
@@ -206,21 +246,19 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
         watched = left_open(watched.side, *root, h);
         break;
       }
-      const bool touch = root->kind == RootKind::Touching;
-      note_root(root->x, touch ? 0 : -watched.side, root->hidden, root->order);
-      const auto beyond = static_cast<std::int8_t>(touch ? watched.side : -watched.side);
-      from = std::max(root->x, std::nextafter(from, 1.0));
-      watched = {touch ? beyond : std::int8_t{0}, true, root->order};
-      if (!(root->x + root->hidden < until)) continue;
-      from = std::max(from, root->x + root->hidden);  // what lies between is not told from zero
-      if (root->hidden > 0) watched = {beyond, false};
+      const int way = root->kind == RootKind::Touching ? 0 : -watched.side;
+      if (is_told && kinks_.ends_step(event, way, h > 0)) break;
+      note_root(root->x, way, root->hidden, root->order);
+      from = go_beyond(*root, from, until, watched);
     }
+    if (is_told) continue;
+    out.after[i] = watched;
     if (!at_switch || is_told_at_end || watched.is_open || watched.at_zero || roots_->is_clear(i)) continue;
     if (vanishes.empty()) vanishes = roots_->vanishing_at(out.x);
     if (!vanishes[i]) continue;
     const RootOf<double> zero = roots_->zero_at(i, out.x);
     if (leaves_open)
-      watched = left_open(watched.side, zero, h);
+      out.after[i] = left_open(watched.side, zero, h);
     else
       note_root(out.x, zero.kind == RootKind::Crossing ? -watched.side : 0, zero.hidden, zero.order);
   }

@@ -66,7 +66,8 @@ class WatchedFunctions {
   void copy_sides(KernelWorkspace& work) const;
   void search_part(const KernelWorkspace& work, double h, double from, double limit, Crossing& out);
   void search(const KernelWorkspace& work, double h, double from, Crossing& out);
-  void pass(const KernelWorkspace& work, double h, double begin, Crossing& out);
+  void note_first(const KernelWorkspace& work, std::size_t event, double h, double from, double limit, Crossing& out);
+  void pass(const KernelWorkspace& work, double h, double begin, std::span<const Watched> begins, Crossing& out);
   bool is_unread(const Crossing& crossing) const;
   bool turns_unread(const KernelWorkspace& work, double h, Crossing& out);
 
@@ -76,6 +77,8 @@ class WatchedFunctions {
   bool follow_places_ = false;              // no switch reads velocities
   double last_found_ = 0;                   // how far the last root was searched for, in time; 0: to the end
   double together_ = 0;                     // of the step: what rounding does not tell apart
+  std::vector<Watched> searched_;           // [events] where the search of now has come to
+  std::vector<bool> passes_;                // [events] it passes roots that end no step, of an event that ends steps
   mutable std::vector<std::int8_t> sides_;  // scratch
 };
 

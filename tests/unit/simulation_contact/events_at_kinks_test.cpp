@@ -159,6 +159,24 @@ TEST_CASE("an event that ends the run at a kink of another does so at once") {
                       [&](const Happening& h) { return h.name == name && std::abs(h.t - back) < 1e-9; }));
 }
 
+TEST_CASE("an event passed against its direction leaves those at a kink of its place alone") {
+  // x = −cos t: it rises through 0 at π/2, falls at 3π/2, rises at 5π/2.
+  const auto r = run_text(
+      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 x^2\nstart x = -1, y' = 1\n"
+      "event thrown when x = 0 falling : set y' = 2 y'\nevent touch when abs(x (x - 0.3)) = 0 : record\n",
+      9);
+  CHECK(count(r, Happening::Kind::Event, "thrown") == 1);
+  const double at = std::acos(-0.3);
+  std::vector<double> touches;
+  for (const Happening& h : r.happenings)
+    if (h.name == "touch") touches.push_back(h.t);
+  const std::vector<double> expected = {half_turn / 2,     at, 2 * half_turn - at, 1.5 * half_turn, 2.5 * half_turn,
+                                        2 * half_turn + at};
+  REQUIRE(touches.size() == expected.size());
+  for (std::size_t k = 0; k < touches.size(); ++k) CHECK(std::abs(touches[k] - expected[k]) < 1e-12);
+  CHECK(r.final.v[1] == 2);
+}
+
 TEST_CASE("a double root within a function whose argument rounds is met once, at its place") {
   // x + 1 touches 0 at half a turn.
   for (const char* touch : {"log(2 + x) = 0", "tan(x + 1) = 0", "tanh(x + 1) = 0", "sinh(x + 1) = 0", "exp(x + 1) = 1",

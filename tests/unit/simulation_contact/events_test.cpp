@@ -90,6 +90,47 @@ std::string wedge(double x0, double y0, double a, double b, double give_back_a, 
 
 }  // namespace
 
+TEST_CASE("an event ends no step that passes it against its direction or touches it") {
+  const auto of = [](const std::string& event) {
+    return run_text(
+        "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2) - 1/2 x^2\nstart x = -1, y' = 1\n" + event, 3);
+  };
+  const std::size_t steps = of("").statistics.steps;
+  for (const char* zero : {"x = 0 falling", "x + 0.9 = 0 falling", "cos(x + 1) = 0 rising", "sin(3 y) - 1 = 0 rising"})
+    for (const char* does : {"stop", "set y' = 2 y'"}) {
+      CAPTURE(zero);
+      const auto r = of(std::string("event e when ") + zero + " : " + does + "\n");
+      CHECK(r.statistics.steps == steps);
+      CHECK(r.happenings.empty());
+      CHECK(r.ending == Ending::Finished);
+    }
+}
+
+TEST_CASE("events of one direction among many roots of a step are those that a record tells") {
+  // Each of them sets what its condition does not read; in all directions of time and orders of the roots.
+  const char* const conditions[] = {
+      "sin(7 x) = 0",   "cos(11 y) = 0.3",   "sin(5 x) cos(9 x) = 0",    "cos(20 y) + 1 = 0", "abs(sin(6 x)) = 0.5",
+      "sin(8 x)^3 = 0", "(x - 0.4)^2 x = 0", "max(sin(9 x), 0.2) = 0.2", "abs(sin(6 x)) = 0", "x abs(x) + 0.01 = 0"};
+  for (const std::string condition : conditions)
+    for (const std::string way : {"rising", "falling"}) {
+      CAPTURE(condition);
+      CAPTURE(way);
+      const auto times = [&](const std::string& does) {
+        const auto r = run_text(
+            "dimensionless\ncoord x, y, z : number\nL = 1/2 (x'^2 + y'^2 + z'^2) - 1/2 (x^2 + y^2)\n"
+            "start x = 1, y' = 0.8, z' = 1\nevent e when " +
+                condition + " " + way + " : " + does + "\n",
+            20);
+        std::vector<double> out;
+        for (const Happening& h : r.happenings) out.push_back(h.t);
+        return out;
+      };
+      const std::vector<double> told = times("record"), met = times("set z' = -z'");
+      REQUIRE(told.size() == met.size());
+      for (std::size_t k = 0; k < told.size(); ++k) CHECK(std::abs(told[k] - met[k]) < 1e-7);
+    }
+}
+
 TEST_CASE("a set at a kink through which the motion goes on happens once at each zero") {
   for (const char* zero : {"x = 0", "x abs(x) = 0", "abs(x) = 0", "max(x, 2 x) = 0"})
     for (const char* way : {"", "falling "}) {
