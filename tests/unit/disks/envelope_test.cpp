@@ -4,6 +4,7 @@
 #include "followed.hpp"
 
 #include <doctest/doctest.h>
+#include "../under_sanitizers.hpp"
 
 #include <string>
 
@@ -125,7 +126,10 @@ TEST_CASE("tails of an envelope cover all motions of its sizes, and not absurdly
     if (std::string(a.name) == "sin(5 t) x + t^3") continue;  // partly a polynomial
     int checked = 0;
     const bool has_no_rule = std::string(a.name) == "atan2(y, x)";
-    for (const double r : {0.5, 0.2, 0.05}) check(a, 0, r, r > 0.1 || has_no_rule, checked);
+    for (const double r : {0.5, 0.2, 0.05}) {
+      if (under_sanitizers && r == 0.2) continue;
+      check(a, 0, r, r > 0.1 || has_no_rule, checked);
+    }
     CHECK((checked > 0 || has_no_rule ||
            std::string(a.name) == "logistic"));  // exp(−300 x) changes by more than an observed value may
   }

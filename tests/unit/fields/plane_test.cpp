@@ -77,6 +77,7 @@ TEST_CASE("a field alone, whose stiffness is one matrix, moves as by its stresse
   for (const int order : {2, 3, 4, 5, 7})
     for (const int cells : {3, 9})
       for (const std::string more : {"", " - cosh(u)", " - 1/10 cos(x) u u_y"}) {
+        if (cells == 9 && !more.empty()) continue;  // more rows of elements than lanes: once an order is enough
         const Answers one = moved("u(x, y)", "", order, cells, more),
                       by_stresses = moved("u(x, y)", "(1 + ε x)", order, cells, more),
                       of_two = moved("u(x, y), v(x, y)", "", order, cells, more + " + 1/2 v'^2 - 1/2 v_x^2");
@@ -203,7 +204,7 @@ TEST_CASE("what does not change along one direction is the field of the other" *
     const Answers along = answers_of(text, 2, false, every);
     // Both ends of the line are given where it says `boundary u = 0`; in the plane two sides stay natural.
     std::string plane = replaced(replaced(text, "u(x)", "u(x, y)"), " cells ", ", y = 0 .. 3 cells ");
-    plane = replaced(replaced(plane, "60 order", "60, 5 order"), "20 order", "20, 3 order");
+    plane = replaced(replaced(plane, "60 order", "60, 2 order"), "20 order", "20, 2 order");
     plane = replaced(plane, " boundary u = 0", "\nboundary left : u = 0\nboundary right : u = 0");
     for (const char* place : {"0.4", "6", "3"})
       plane = replaced(plane, "u(" + std::string(place) + ")", "u(" + std::string(place) + ", 1.1)");
@@ -222,7 +223,7 @@ TEST_CASE("what does not change along one direction is the field of the other" *
     turned = replaced(replaced(turned, "EXP(", "exp("), "eXpect", "expect");
     for (const char* place : {"0.4", "6", "3"})
       turned = replaced(turned, "u(" + std::string(place) + ", 1.1)", "u(1.1, " + std::string(place) + ")");
-    turned = replaced(replaced(turned, "cells 60, 5", "cells 5, 60"), "cells 20, 3", "cells 3, 20");
+    turned = replaced(replaced(turned, "cells 60, 2", "cells 2, 60"), "cells 20, 2", "cells 2, 20");
     turned = replaced(turned, "X", "y");
     const Answers upwards = answers_of(turned, 2, false, every);
     REQUIRE(along.values.size() == 2);

@@ -1,6 +1,8 @@
 #include "../under_sanitizers.hpp"
 #include "support.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 
 using namespace maupertuis;
@@ -191,11 +193,12 @@ TEST_CASE("one jump among thousands of pieces, or behind one of hundreds of spri
       text += "V += 1/2 k (abs(x" + std::to_string(i) + " - x" + std::to_string(i - 1) + ") - l)^2\n";
     return text + more;
   };
-  const int count = under_sanitizers ? 210 : 300;
+  const int count = under_sanitizers ? 110 : 300, last = count - 10;
   CHECK(Elaborated(springs(count, "")).fine());
-  const Elaborated torn(springs(count, "V += 1/2 k l^2 step(x200 - x199)\n"));
+  const Elaborated torn(springs(count, fmt::format("V += 1/2 k l^2 step(x{} - x{})\n", last + 1, last)));
   CHECK(torn.codes() == "E0430");
-  CHECK(torn.first_message().find("V jumps by 50 J where x199 - x200 = 0") != std::string::npos);
+  const std::string place = fmt::format("V jumps by 50 J where x{} - x{} = 0", last, last + 1);
+  CHECK(torn.first_message().find(place) != std::string::npos);
 }
 
 TEST_CASE("a jump far from everything that is tried is found by solving for its place") {
