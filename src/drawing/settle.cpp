@@ -431,9 +431,9 @@ void Settler::add_grounds(const std::vector<WrittenGround>& grounds) {
   const std::vector<double> u = up();
   if (d_ == 3 && plan_.grounds.empty() && !drawing_.gravity.empty() && u[2] > 0.999)
     add_ground({0, 0, world_low_[2]}, u);
-  double square = 0;
-  for (std::size_t k = 0; k < d_; ++k) square += std::pow((drawing_.high[k] - drawing_.low[k]) / 2, 2);
-  drawing_.radius = square > 0 ? std::sqrt(square) : 1;
+  double radius = 0;
+  for (std::size_t k = 0; k < d_; ++k) radius = std::hypot(radius, drawing_.high[k] / 2 - drawing_.low[k] / 2);
+  drawing_.radius = radius > 0 ? radius : 1;
 }
 
 void Settler::add_ground(std::vector<double> place, std::vector<double> normal) {

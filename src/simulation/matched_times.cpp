@@ -13,12 +13,13 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// What it costs to leave one alone: the median of the ways between `times`, or their mean where half of them are none.
+/// Where all are at one instant, as far as the others are away.
 double cost_alone(std::span<const double> times, std::span<const double> others) {
   std::vector<double> ways;
   for (std::size_t i = 1; i < times.size(); ++i) ways.push_back(std::abs(times[i] - times[i - 1]));
   double farthest = 0;
   for (const double t : others) farthest = std::max(farthest, std::abs(t - times.front()));
-  if (ways.empty()) return farthest;
+  if (ways.empty() || times.front() == times.back()) return farthest;
   const double mean = std::accumulate(ways.begin(), ways.end(), 0.0) / static_cast<double>(ways.size());
   const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
   std::nth_element(ways.begin(), middle, ways.end());
@@ -109,15 +110,18 @@ std::vector<double> one_by_one(std::span<const double> times, std::span<const do
   return out;
 }
 
-/// Of what is alone the nearer of the times beside it, where a pair comes behind.
+/// Of what is alone the nearer of the times beside it, where a pair comes behind or stands at its own instant.
 void fill_gaps(std::span<const double> times, std::vector<double>& out) {
   std::vector<double> behind(out.size());
   double next = infinity;
   for (std::size_t i = out.size(); i-- > 0;) behind[i] = next = std::isfinite(out[i]) ? out[i] : next;
-  double before = infinity;
+  constexpr double one_instant = 4 * std::numeric_limits<double>::epsilon();
+  double before = infinity, paired = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (std::isfinite(out[i])) {
-      before = out[i];
+      before = out[i], paired = times[i];
+    } else if (std::abs(times[i] - paired) <= one_instant * std::abs(paired)) {
+      out[i] = before;
     } else if (std::isfinite(behind[i])) {
       out[i] = std::abs(before - times[i]) < std::abs(behind[i] - times[i]) ? before : behind[i];
     }

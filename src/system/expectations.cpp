@@ -267,6 +267,7 @@ std::optional<std::vector<Expr>> levels(Elaboration& e, const std::vector<syntax
 std::optional<Value> differentiable(Elaboration& e, const Expression& x, const Place& place = along_motion()) {
   const std::optional<Value> subject = number(e, x, place);
   if (subject && subject->order >= 2 && !number(e, x)) return std::nullopt;
+  if (subject && refuse_along_motion(e, *subject, x)) return std::nullopt;
   return subject;
 }
 

@@ -64,6 +64,22 @@ std::string no_index_without_convexity(const Problem& problem) {
       higher ? "∂²L/∂q''∂q''" : "∂²L/∂q'∂q'");
 }
 
+/// Elements that follow the path may be too long for its neighbours: a rest is followed by a few, and neighbours swing
+/// about it many times. The count on ever finer ones, where it only grows (Ritz), until it stays.
+Inertia inertia_of_finer(Functional& functional, const Trial& coarse, const FixedEnds& fixed, const Vector& least,
+                         Inertia found) {
+  constexpr Index most_elements = 800;
+  Trial trial = coarse;
+  while (2 * trial.mesh.elements() <= most_elements) {
+    trial = halved(trial, std::vector<bool>(static_cast<std::size_t>(trial.mesh.elements()), true));
+    const Inertia finer = inertia_of(functional, trial, fixed, least);
+    const bool stays = finer.negative == found.negative && finer.nullity == found.nullity;
+    found = finer;
+    if (stays) break;
+  }
+  return found;
+}
+
 void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixed, const Vector& least,
                  const SingularEnds& singular, const ActionOptions& options, StationaryPath& out) {
   const Trial& trial = refined.coarse;
@@ -86,7 +102,12 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
                            fixed, singular.start, singular.end, least, options.interrupt);
   else
     fields.reason = fields.check.reason = "The equations of L + λ G could not be made.";
-  combine(inertia, fields, all_fixed(problem.functional, trial, fixed), out.second);
+  const bool only_fixed = all_fixed(problem.functional, trial, fixed);
+  combine(inertia, fields, only_fixed, out.second);
+  if (out.second.by_fields && !out.second.index) {
+    out.second = {};
+    combine(inertia_of_finer(problem.functional, trial, fixed, least, inertia), fields, only_fixed, out.second);
+  }
   out.check = fields.check;
   if (!out.check.done) carry_alone();  // neighbours may be lost where the motion itself is not
 }

@@ -252,7 +252,8 @@ class Study {
   }
 
   /// One stretch from a state towards a time, shorter where it has to be; where it ended.
-  std::optional<double> stretch(const MotionState& from, double to) {
+  std::optional<double> stretch(const MotionState& from, double next_break) {
+    double to = next_break;
     near_conjugate_ = false;
     for (int attempt = 0; attempt < 40; ++attempt) {
       const auto carried = neighbours_.carry(from, basis_, to);
@@ -270,7 +271,7 @@ class Study {
       const Vector sizes = Eigen::JacobiSVD<Matrix>(next.topRows(next.cols())).singularValues();
       const bool last = to == breaks_.back();
       if (!last && sizes.minCoeff() < too_near_end) {
-        near_conjugate_ = true;
+        near_conjugate_ = near_conjugate_ || to == next_break;
         to = from.t + 0.83 * (to - from.t);
         continue;
       }
@@ -425,7 +426,7 @@ class Study {
   Matrix frame_, total_, first_tangent_, basis_;
   FieldStudy out_;
   int last_side_ = 0;
-  bool near_conjugate_ = false;
+  bool near_conjugate_ = false;  // the break that the stretch went for
 };
 
 /// The breaks of the mesh, those next to an end where L is infinite left out; from an end where it is finite.

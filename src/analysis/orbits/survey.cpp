@@ -3,6 +3,8 @@
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/quaternion_coordinates.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +16,7 @@ namespace {
 constexpr int states_of_a_step = 16;
 constexpr double rounding_of_rest = 1e-12;
 constexpr std::size_t most_states = 1u << 20;
+constexpr std::size_t most_steps = 300'000;
 
 /// What a coordinate that never moves is measured against.
 double size_at_rest(double value) { return value != 0 ? std::abs(value) : 1.0; }
@@ -111,7 +114,7 @@ Survey survey_by(Stepper stepper, const MechanicalSystem& system, const MotionSt
     stepper.state(state.t, state.q, state.v);
     out.states.push_back(std::move(state));
   };
-  while (stepper.time() != end && out.ended.empty()) {
+  while (stepper.time() != end && out.ended.empty() && stepper.steps() < most_steps) {
     const Step step = stepper.step(end);
     if (step.ending != StepEnding::None) {
       out.ended = step.reason;
@@ -122,6 +125,8 @@ Survey survey_by(Stepper stepper, const MechanicalSystem& system, const MotionSt
       if (++seen % stride == 0)
         add(k == states_of_a_step ? step.end : step.begin + (step.end - step.begin) * k / states_of_a_step);
   }
+  if (out.ended.empty() && stepper.time() != end)
+    out.ended = fmt::format("It takes more than {} steps, and what comes after them was not looked at.", most_steps);
   if (out.states.back().t != stepper.time()) add(stepper.time());
   out.steps = stepper.steps();
   out.rests = true;

@@ -148,7 +148,10 @@ class Algorithm {
 
   /// Of each product one factor, also where it is a product by what came after it alone.
   void take_branches() {
-    for (std::size_t k = 0; k < out_.constraints.size();) k = take_branch(k) ? 0 : k + 1;
+    for (std::size_t k = 0; k < out_.constraints.size();) {
+      k = take_branch(k) ? 0 : k + 1;
+      if (out_.outcome == ConstraintChain::Outcome::Contradiction) return;
+    }
   }
 
   /// False where constraint k is regular as it stands.
@@ -158,6 +161,12 @@ class Algorithm {
     const FoundConstraint whole = out_.constraints[k];
     ExprVector parts = zeros_of(whole.value, others);
     if (parts.size() == 1 && !parts.front().is(Kind::Product)) return false;
+    if (parts.size() == 1 && !has_state(parts.front())) {  // 2 t = 0, by what the others say
+      out_.constraints.erase(out_.constraints.begin() + static_cast<std::ptrdiff_t>(k));
+      out_.constraints.push_back({parts.front(), whole.generation, whole.follows});
+      out_.outcome = ConstraintChain::Outcome::Contradiction;
+      return false;
+    }
     if (parts.size() == 1) parts = zeros_of(branch_of(parts.front()), others);
     const auto place = out_.constraints.begin() + static_cast<std::ptrdiff_t>(k);
     std::vector<FoundConstraint> written;

@@ -33,7 +33,8 @@ inline std::optional<bool> less(const Real100& a, const Real100& b) {
 }
 inline Real100 unknown_between(const Real100&, const Real100&) { return std::numeric_limits<Real100>::quiet_NaN(); }
 inline Real100 integer_power(const Real100& x, long n) { return pow(x, static_cast<int>(n)); }
-inline Real100 real_power(const Real100& x, const Real100& y) { return pow(x, y); }
+/// Boost's pow turns the sign of a negative exponent and calls itself; that of NaN stays negative, without end.
+inline Real100 real_power(const Real100& x, const Real100& y) { return isnan(y) ? y : pow(x, y); }
 
 /// n of x^(n/2) for odd n: then a power of √x, for a tenth of the price of logarithm and exponential.
 inline std::optional<long> odd_halves(const Rational& exponent) {

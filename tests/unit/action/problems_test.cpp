@@ -123,8 +123,7 @@ TEST_CASE("a straight line past the origin of polar coordinates takes less than 
     REQUIRE(found->paths.size() == 1);
     CHECK(found->paths[0].action == doctest::Approx(2 * std::pow(std::sin(angle / 2), 2)).epsilon(1e-12));
   }
-  for (const double angle : {3.15, 4.0, 7.0})
-    CHECK(code_of_search(m, fixed_ends({1, 0}, 0, {1, angle}, 1)) == "E1204");
+  for (const double angle : {3.15, 4.0, 7.0}) CHECK(code_of_search(m, fixed_ends({1, 0}, 0, {1, angle}, 1)) == "E1204");
 }
 
 TEST_CASE("the brachistochrone from rest to a vertical line, which it meets at a right angle") {
@@ -302,6 +301,26 @@ TEST_CASE("what has no action, ends off the constraints, ends in the wrong order
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 0, {1, 1}, 1)) == "E1202");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 1, {0, 1}, 0)) == "E1203");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, -1.5e308, {0, 1}, 1.5e308)) == "E1203");
+}
+
+TEST_CASE("neighbours of a rest that swing many times are counted to the end, by elements that follow them too") {
+  // x has a conjugate point every half period π/√2; y and z, which are free, have none.
+  for (const double end : {100.0, 3000.0}) {
+    if (under_sanitizers && end > 100) break;
+    const ModelText m("system o\ndimensionless\ncoord x, y, z : number\nL = 1/2 x'^2 + y'^2 + z'^2 - x^2\nrun " +
+                      std::to_string(end) + "\n");
+    Diagnostics diagnostics;
+    const auto found = action_of_motion(m.model, m.equations, {}, diagnostics);
+    REQUIRE(found);
+    const auto count = static_cast<std::size_t>(end * std::sqrt(2.0) / pi);
+    const SecondVariation& second = found->path.second;
+    REQUIRE(second.conjugate.size() == count);
+    CHECK(second.conjugate.back().t ==
+          doctest::Approx(static_cast<double>(count) * pi / std::sqrt(2.0)).epsilon(1e-11));
+    REQUIRE(second.by_inertia);
+    CHECK(*second.by_inertia == count);
+    CHECK(diagnostics.items().empty());
+  }
 }
 
 TEST_CASE(

@@ -225,3 +225,10 @@ TEST_CASE("squares are no regular constraints, and their zeros are") {
         "x = 0, x' = 0, y = 0, y' = 0; free 1, motions 0");
   CHECK(branch_at("coord x, y : number\nL = y (x' - 1)^2\nstart x' = 1, y = 1\n") == "1 - x' = 0; free 1, motions 1");
 }
+
+TEST_CASE("a constraint that the others make a product of numbers and times contradicts them") {
+  // 0 = t x on the constraints, where x is not asked for: t = 0 at one instant alone.
+  const ModelText m("dimensionless\ncoord x, y : number\nL = (x' - y)^2 + x'' + x t\n");
+  const DegenerateAnalysis a = analyse_degenerate(m.equations, generic_state(m.model), true, true, nullptr);
+  CHECK(a.chain.outcome == ConstraintChain::Outcome::Contradiction);
+}

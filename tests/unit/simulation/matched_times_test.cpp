@@ -19,6 +19,9 @@ TEST_CASE("times of two runs belong together in their order") {
   CHECK(matched_times(Times{0.1, 1, 2}, Times{1, 2}) == Times{1, 1, 2});
   CHECK(matched_times(Times{1, 1.4, 1.8, 2, 2.5}, Times{1, 2}) == Times{1, 1, 2, 2, none});
   CHECK(matched_times(Times{1, 2}, Times{}) == Times{none, none});
+  // Of one instant the other run may have fewer.
+  CHECK(matched_times(Times{1, 1}, Times{1.25}) == Times{1.25, 1.25});
+  CHECK(matched_times(Times{1, 2, 2}, Times{1, 2.25}) == Times{1, 2.25, 2.25});
   CHECK(matched_times(Times{}, Times{1}).empty());
   // As many, but each has one that the other has not.
   CHECK(matched_times(Times{1, 2, 3, 4, 5, 5.1, 6}, Times{1, 1.1, 2, 3, 4, 5, 6}) == Times{1, 2, 3, 4, 5, 5, 6});

@@ -467,3 +467,14 @@ TEST_CASE("a small round wall far away is hit where it stands") {
   CHECK(r.final.q[0] == doctest::Approx(-500).epsilon(1e-6));
   CHECK(r.final.q[1] == doctest::Approx(500 * std::sqrt(3.0)).epsilon(1e-6));
 }
+
+TEST_CASE("a motion may end, and an event set it, where the gap of an open contact has no slope") {
+  const std::string text =
+      "dimensionless\ncoord x, y : number\nT = 1/2 x'^2 + 1/2 y'^2\n"
+      "contact sqrt(x^2 + y^2) <= 1 restitution 1 name wall\nstart x = -0.5, x' = 1\n";
+  CHECK(run_text(text, 0.5).final.q[0] == 0);
+  const auto r = run_text(text + "event centre when x = 0 : set x' = x'\n", 4);
+  CHECK(count(r, Happening::Kind::Event, "centre") == 2);
+  CHECK(count(r, Happening::Kind::Impact, "wall") == 2);
+  CHECK(r.final.q[0] == doctest::Approx(-0.5));
+}
