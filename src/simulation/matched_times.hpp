@@ -16,8 +16,8 @@ namespace maupertuis {
 /// other, and by what one run has more, at most: runs that have nothing to do with each other stay far apart.
 ///
 /// What the other run has not has the nearer of the times beside it, but behind the last pair, and its instant, none:
-/// there the other run may have ended. None is infinity. Cost: the lengths' difference and seven, times the length; one by one where
-/// that is more than a few million.
+/// there the other run may have ended. None is infinity. Cost: the lengths' difference and seven, times the length; one
+/// by one where that is more than a few million.
 std::vector<double> matched_times(std::span<const double> times, std::span<const double> others);
 
 }  // namespace maupertuis
