@@ -352,7 +352,7 @@ ExitCode simulate_fields(const SimulateOptions& options, Study& study, Console& 
   if (!run) return finish(console, study, std::move(document));
   if (!options.output.empty())
     write_rows(options.output, rows_of_table ? table.rows(*run, options.errors) : run->trajectory, study.diagnostics());
-  if (!options.plot.empty())
+  if (!options.plot.empty() && has_pictures(*run, study.diagnostics()))
     write_picture(options.plot, pictures_of_fields(study, *equations, *run, {}), study.diagnostics());
   if (!console.json()) console.print(field_run_text(*run, study.model()->system) + table.text(*run));
   document = field_run_json(*run, study.model()->system);

@@ -363,7 +363,8 @@ void SteadyState::find_family(Solution& solution) const {
     Solution moved = solution;
     place(z + part * whole, moved.point);
     const auto near = solve(moved.point, false);
-    const auto there = near ? proved(*near, next_to) : std::nullopt;
+    // Where all forces vanish what is left of them compares with nothing, and only 100 digits arrive.
+    const auto there = near ? proved(*near, next_to) : precise_root(moved.point, 2 * step);
     // Multipliers that constraints leave open are fitted anew at each point: they say nothing about the way.
     if (there) gone.col(k) = (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
   }

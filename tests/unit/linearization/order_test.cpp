@@ -65,6 +65,20 @@ TEST_CASE("A ring of equilibria is one family, and two rings are two") {
   CHECK(near(found[3], 2, 1e-9));
 }
 
+TEST_CASE("The straight ways of a rolling disk, of any heading and speed, are one family") {
+  // Nothing acts on any of them: what rounding leaves of the forces compares with nothing.
+  Linearized disk(
+      "system d\nparam m = 1 kg, R = 20 cm\ncoord x, y : length, φ, ψ : angle\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/4 m R^2 φ'^2 + 1/8 m R^2 ψ'^2\n"
+      "constraint x' = R φ' cos ψ name along_x\nconstraint y' = R φ' sin ψ name along_y\nstart φ' = 2 rad/s, ψ' = 1 "
+      "rad/s\n");
+  const ModalStudy study = disk.study();
+  REQUIRE(study.entries.size() == 2);
+  CHECK(study.entries[0].equilibrium.at_rest);
+  CHECK(study.entries[0].equilibrium.family == 1);
+  CHECK(study.entries[1].equilibrium.family == 2);
+}
+
 TEST_CASE("A ring at the bottom of a high power is one family, and no accident of rounding makes it stable or not") {
   // V = (r² − 1)ᵖ: the hill or the bottom in the middle, and the ring. Its Hessian vanishes for p > 2.
   for (const char* power : {"3", "4", "5", "6"}) {
