@@ -1,4 +1,5 @@
 #include "symbolic/print/layout.hpp"
+#include "base/decimal_places.hpp"
 
 #include "symbolic/expression/kind_table.hpp"
 #include "symbolic/print/reading_rank.hpp"
@@ -259,19 +260,6 @@ class Builder {
   std::string turning_;  // ball.ω.x as ω_1 where no other body has rates
 };
 
-bool decimal_digits(std::string denominator, int& digits) {
-  // The denominator is 2^a 5^b: how many places the decimal has. 1/4096 stays a fraction, 0.866025403784439 does not
-  // become one.
-  const bool is_long = denominator.size() > 10;
-  if (denominator.size() > 18) return false;
-  long long d = std::stoll(denominator);
-  int twos = 0, fives = 0;
-  for (; d % 2 == 0; d /= 2) ++twos;
-  for (; d % 5 == 0; d /= 5) ++fives;
-  digits = std::max(twos, fives);
-  return d == 1 && (is_long ? digits <= 17 : digits <= 9);
-}
-
 std::string decimal_text(const Rational& value, int digits) {
   std::string text = (value * maupertuis::pow(Rational(10), digits)).numerator_string();
   if (text.size() <= static_cast<std::size_t>(digits))
@@ -286,11 +274,10 @@ Layout lay_out_number(const Rational& value) {
   if (value.is_integer()) return number_text(value.numerator_string());
   // Halves, thirds, fifths are fractions to a reader; 981/100 is 9.81.
   const std::string denominator = value.denominator_string();
-  int digits = 0;
-  const bool decimal = decimal_digits(denominator, digits);
+  const auto places = decimal_places(value);
   const bool plain_fraction =
       denominator.size() == 1 || (denominator.size() == 2 && denominator.back() != '0' && denominator != "25");
-  if (decimal && !plain_fraction) return number_text(decimal_text(value, digits));
+  if (places && !plain_fraction) return number_text(decimal_text(value, *places));
   return combined(Shape::Quotient, {number_text(value.numerator_string()), number_text(denominator)});
 }
 

@@ -1,4 +1,5 @@
 #include "symbolic/transform/reading_cost.hpp"
+#include "base/decimal_places.hpp"
 
 #include <algorithm>
 
@@ -37,9 +38,9 @@ double brackets_around(Expr sum) {
 std::size_t digits_of(const Rational& value) {
   const Rational size = abs(value);
   if (size.is_integer()) return size.numerator_string().size();
-  for (int places = 1; places <= 9; ++places) {
-    const Rational shifted = size * pow(Rational(10), places);
-    if (shifted.is_integer()) return std::max(shifted.numerator_string().size(), static_cast<std::size_t>(places) + 1);
+  if (const auto places = decimal_places(size)) {
+    const Rational shifted = size * pow(Rational(10), *places);
+    return std::max(shifted.numerator_string().size(), static_cast<std::size_t>(*places) + 1);
   }
   return size.numerator_string().size() + size.denominator_string().size();
 }
