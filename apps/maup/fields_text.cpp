@@ -26,35 +26,19 @@ Layout shown(const FieldEquations& equations, Expr e) {
 
 std::string plain_of(const FieldEquations& equations, Expr e) { return to_plain(shown(equations, e)); }
 
-/// Whether the condition is no natural one at this end: the field is given there, or bodies take hold of it.
-bool is_essential(const FieldEquations& equations, const NaturalCondition& n, bool right) {
-  const FieldSystem& s = equations.system();
-  if (s.periodic(n.along)) return true;
-  for (const InterfaceCondition& c : equations.interfaces)
-    if (c.field == n.field && c.moment == n.moment && c.end && (*c.end == BoundaryCondition::Side::Right) == right)
-      return true;
-  for (const BoundaryCondition& b : s.boundary) {
-    const bool side = (b.side == BoundaryCondition::Side::Right || b.side == BoundaryCondition::Side::Top) == right;
-    const bool along = (static_cast<int>(b.side) / 2) == static_cast<int>(n.along);
-    if (side && along && b.jet.field == n.field && (b.jet.order() == 1) == n.moment) return true;
-  }
-  return false;
-}
-
 /// "at both ends of x", "where u is not given"
-std::string where_natural(const FieldEquations& equations, const NaturalCondition& n) {
+std::string where_natural(const FieldEquations& equations, const NaturalAtEnds& at) {
   const FieldSystem& s = equations.system();
+  const NaturalCondition& n = equations.natural[at.natural];
   const std::string& x = s.space[n.along].name;
   const std::string name = s.fields[n.field].name + (n.moment ? "_" + x : "");
   if (s.periodic(n.along))
     return fmt::format("where δ{} is free; the domain is periodic{} and has no end{}", name,
                        s.periodic() ? "" : " along " + x, s.periodic() ? "" : " there");
-  const bool left = !is_essential(equations, n, false), right = !is_essential(equations, n, true);
   if (!s.space[n.along].from) return fmt::format("at an end of {} where {} is free", x, name);
-  if (left && right) return fmt::format("at both ends of {}, where {} is free", x, name);
-  if (left || right)
-    return fmt::format("at the {} end of {}, where {} is free",
-                       n.along == 0 ? (left ? "left" : "right") : (left ? "bottom" : "top"), x, name);
+  if (at.first && at.last) return fmt::format("at both ends of {}, where {} is free", x, name);
+  const char* const ends[][2] = {{"left", "right"}, {"bottom", "top"}, {"first", "last"}};
+  if (at.first || at.last) return fmt::format("at the {} end of {}, where {} is free", ends[n.along][at.last], x, name);
   return fmt::format("nowhere: {} is given or held at both ends of {}", name, x);
 }
 
@@ -135,7 +119,7 @@ std::vector<FormulaLine> field_lines(Study& study, bool with_steps) {
       out.push_back(
           line_of(layouts::symbol(i.symbol), field_layout(s, lay_out(i.value, order)), "Field equations", ""));
   }
-  for (const NaturalCondition& n : equations.natural) {
+  for (const NaturalAtEnds& n : natural_at_ends(equations)) {
     out.push_back(
         line_of(shown(equations, n.value), zero(), "Natural boundary conditions", where_natural(equations, n)));
     out.back().declared = "natural";  // as `expect` has it

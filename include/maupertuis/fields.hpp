@@ -61,6 +61,18 @@ struct FieldEquations {
 /// (elliptic in time).
 std::optional<FieldEquations> field_equations(std::shared_ptr<const FieldModel> model, Diagnostics& diagnostics);
 
+/// A natural condition as it holds at the ends of its variable: with the forces that act there, written or by a slope
+/// that is given, and not where the field is given or bodies hold it.
+struct NaturalAtEnds {
+  std::size_t natural = 0;  // index in FieldEquations::natural
+  Expr value;               // vanishes: p + F at the last end, p − F at the first, m likewise
+  bool first = false, last = false;
+};
+
+/// One entry for each natural condition and force; with neither end where the condition holds nowhere, and where there
+/// is no end: the variable goes round, or has no domain.
+std::vector<NaturalAtEnds> natural_at_ends(const FieldEquations& equations);
+
 /// Checks the equations and B against ℒ along random polynomial fields over prime fields.
 Certificate certify(const FieldEquations& equations, std::uint64_t seed = 0x6d617570);
 

@@ -131,12 +131,13 @@ class FieldVerifier {
     return false;
   }
   void decide(const fe::Natural& e, ExpectationResult& result) {
+    const std::vector<NaturalAtEnds> natural = natural_at_ends(equations_);
     for (const Expr& c : e.conditions) {
-      const bool found = std::any_of(equations_.natural.begin(), equations_.natural.end(),
-                                     [&](const NaturalCondition& n) { return is_multiple(c, n.value); });
+      const bool found =
+          std::any_of(natural.begin(), natural.end(), [&](const NaturalAtEnds& n) { return is_multiple(c, n.value); });
       if (found) continue;
       result.actual = text_of(c) + " = 0 is none of";
-      for (const NaturalCondition& n : equations_.natural)
+      for (const NaturalAtEnds& n : natural)
         result.expected += (result.expected.empty() ? "" : "; ") + text_of(n.value) + " = 0";
       result.message = "The natural conditions are those that the variation leaves at a free end.";
       return;

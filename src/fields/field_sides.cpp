@@ -62,10 +62,79 @@ std::vector<Expr> conditions_at(const FieldEquations& equations, std::size_t fie
   return out;
 }
 
+/// Across x and y; a density of three variables knows no sides across the third.
+Side side_of(std::size_t variable, bool last) { return sides_across(variable)[last ? 1 : 0]; }
+
+bool has_moment(const FieldEquations& equations, const NaturalCondition& n) {
+  return std::any_of(equations.natural.begin(), equations.natural.end(), [&](const NaturalCondition& other) {
+    return other.moment && other.field == n.field && other.along == n.along;
+  });
+}
+
+/// Whether `boundary` holds there what the condition leaves free: the field of a force, the slope of a moment.
+bool is_held(const FieldEquations& equations, const NaturalCondition& n, bool last) {
+  const auto holds = [&](const BoundaryCondition& b) {
+    return b.jet.field == n.field && (b.jet.order() == 1) == n.moment;
+  };
+  const std::vector<BoundaryCondition>& all = equations.system().boundary;
+  if (n.along < 2)
+    return std::any_of(all.begin(), all.end(),
+                       [&](const BoundaryCondition& b) { return b.side == side_of(n.along, last) && holds(b); });
+  constexpr std::ptrdiff_t all_sides = 4;  // `boundary u = 0` means those of the third variable too
+  return std::count_if(all.begin(), all.end(), holds) == all_sides;
+}
+
+/// Whether the slope is given there of a field without moments: by the force that makes it so.
+bool has_given_slope(const FieldEquations& equations, const NaturalCondition& n, bool last) {
+  if (n.moment || n.along > 1 || has_moment(equations, n)) return false;
+  const std::vector<BoundaryCondition>& all = equations.system().boundary;
+  return std::any_of(all.begin(), all.end(), [&](const BoundaryCondition& b) {
+    return b.side == side_of(n.along, last) && b.jet.field == n.field && b.jet.order() == 1;
+  });
+}
+
+bool has_bodies(const FieldEquations& equations, const NaturalCondition& n, bool last) {
+  return n.along < 2 &&
+         std::any_of(equations.interfaces.begin(), equations.interfaces.end(), [&](const InterfaceCondition& c) {
+           return c.end == side_of(n.along, last) && c.field == n.field && c.moment == n.moment;
+         });
+}
+
+Expr with_forces(const FieldEquations& equations, const NaturalCondition& n, bool last) {
+  Expr out = n.value;
+  if (has_given_slope(equations, n, last)) {
+    const Expr given = as_given(equations.system(), n.value, side_of(n.along, last));
+    if (!vanishes_identically(given)) out = out - given;
+  }
+  for (const EndForce& f : equations.system().end_forces)
+    if (n.along < 2 && f.side == side_of(n.along, last) && f.jet.field == n.field && (f.jet.order() == 1) == n.moment)
+      out = last ? out + f.value : out - f.value;
+  return out;
+}
+
 }  // namespace
 
 std::vector<Side> sides_across(std::size_t variable) {
   return variable == 0 ? std::vector{Side::Left, Side::Right} : std::vector{Side::Bottom, Side::Top};
+}
+
+std::vector<NaturalAtEnds> natural_at_ends(const FieldEquations& equations) {
+  const FieldSystem& s = equations.system();
+  std::vector<NaturalAtEnds> out;
+  for (std::size_t i = 0; i < equations.natural.size(); ++i) {
+    const NaturalCondition& n = equations.natural[i];
+    const bool has_ends = !s.periodic(n.along) && s.space[n.along].from;
+    const auto holds = [&](bool last) { return !is_held(equations, n, last) && !has_bodies(equations, n, last); };
+    const bool first = has_ends && holds(false), last = has_ends && holds(true);
+    const Expr at_first = with_forces(equations, n, false), at_last = with_forces(equations, n, true);
+    if (first == last && (!first || at_first == at_last))
+      out.push_back({i, first ? at_first : n.value, first, last});
+    else {
+      if (first) out.push_back({i, at_first, true, false});
+      if (last) out.push_back({i, at_last, false, true});
+    }
+  }
+  return out;
 }
 
 Expr on_side(const FieldSystem& s, Expr e, Side side) {

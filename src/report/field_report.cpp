@@ -114,11 +114,14 @@ class FieldComposer {
       slopes.lines.push_back({layouts::partial(layouts::name("ℒ"), jet_with_subscripts(s_, jet)),
                               shown(differentiate(s_.density, symbol)), "all other derivatives held fixed", ""});
     }
-    for (const NaturalCondition& n : e_.natural)
-      natural.lines.push_back({shown(n.value), layouts::number("0"),
-                               fmt::format("at an end {} = const. where {} is free", s_.space[n.along].name,
+    for (const NaturalAtEnds& at : natural_at_ends(e_)) {
+      const NaturalCondition& n = e_.natural[at.natural];
+      const char* const end = at.first == at.last ? "an end" : at.first ? "the first end" : "the last end";
+      natural.lines.push_back({shown(at.value), layouts::number("0"),
+                               fmt::format("at {} {} = const. where {} is free", end, s_.space[n.along].name,
                                            n.moment ? "the slope" : "the field"),
                                ""});
+    }
     for (std::size_t mu = 0; mu < e_.boundary_terms.size(); ++mu)
       left.lines.push_back(
           {layouts::power(layouts::name("B"), layouts::name(mu == s_.space.size() ? "t" : s_.space[mu].name)),
