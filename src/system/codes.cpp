@@ -506,6 +506,14 @@ constexpr CodeEntry kEntries[] = {
      "part once more doubles it.",
      "coord x : length\nparam m = 1 kg\npoint P mass m at (x, 0)\nT += 1/2 m x'^2\n",
      "coord x : length\nparam m = 1 kg\npoint P mass m at (x, 0)\n"},
+    {"W0443", "simultaneous impacts beside friction",
+     "`impact simultaneous` is a law of normal impulses alone. A contact that is hit alone has its friction; where one "
+     "with friction is hit together with others a run ends, since the law says nothing of friction. `impact "
+     "sequential`, the default, hits one contact after the other, each with its friction.",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 friction "
+     "0.3 slip x' name floor\ncontact x >= 0 name wall\nimpact simultaneous\nstart x = 1 m, z = 1 m\n",
+     "coord x, z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m (x'^2 + z'^2)\nV = m g z\ncontact z >= 0 friction "
+     "0.3 slip x' name floor\ncontact x >= 0 name wall\nstart x = 1 m, z = 1 m\n"},
     {"E0436", "gravity, or a damping coefficient, depends on the motion",
      "`gravity` is one vector for all bodies, whose weights m g come from the potential −m g·r; a field that differs "
      "from place to place has a potential of its own. A damper is D = ½ c ṡ², which gives the force c ṡ only where c "

@@ -294,14 +294,34 @@ void friction(Elaboration& e, const FrictionStatement& s, Span span) {
   e.system().frictions.push_back(std::move(f));
 }
 
+/// W0443: a run ends where a contact that rubs is hit together with another one.
+void warn_of_friction_at_once(Elaboration& e, Span impact) {
+  const std::vector<Contact>& contacts = e.system().contacts;
+  const auto rubs = std::find_if(contacts.begin(), contacts.end(), [&](const Contact& c) {
+    return c.friction.sticking || (c.friction.present() && constant_value(e, c.friction.kinetic) != 0.0);
+  });
+  if (rubs == contacts.end() || contacts.size() < 2) return;
+  const auto index = static_cast<std::size_t>(rubs - contacts.begin());
+  e.diagnostics.warning(
+      "W0443", impact,
+      fmt::format("simultaneous impacts say nothing of the friction of {}", e.system().contact_label(index)),
+      "Their law has normal impulses alone. A contact that is hit alone has its friction; a run ends where one with "
+      "friction is hit together with others.",
+      "Leave `impact simultaneous` out: one contact after the other is hit then, with its friction.");
+}
+
 }  // namespace
 
 void elaborate_contacts(Elaboration& e) {
+  std::optional<Span> at_once;
   for (const syntax::Statement& statement : e.tree.statements) {
     if (const auto* s = std::get_if<ContactStatement>(&statement.body)) contact(e, *s, statement.span);
-    if (const auto* s = std::get_if<syntax::ImpactStatement>(&statement.body); s && s->simultaneous)
+    if (const auto* s = std::get_if<syntax::ImpactStatement>(&statement.body); s && s->simultaneous) {
       e.system().impact_law = ImpactLaw::Simultaneous;
+      at_once = statement.span;
+    }
   }
+  if (at_once) warn_of_friction_at_once(e, *at_once);
   for (const syntax::Statement& statement : e.tree.statements)
     if (const auto* s = std::get_if<FrictionStatement>(&statement.body)) friction(e, *s, statement.span);
 }
