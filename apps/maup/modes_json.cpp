@@ -234,6 +234,7 @@ Json resting_document(const RestingMode& mode) {
   Json out = modes_document(system, mode.study);
   Json points = out["points"];
   for (std::size_t i = 0; i < mode.study.entries.size(); ++i) {
+    points[i]["forces_determined"] = !mode.forces_are_open[i];
     points[i]["static_friction"] = Json::array();
     for (const StaticHold& h : mode.holds[i])
       points[i]["static_friction"].push_back({{"friction", h.friction},

@@ -486,6 +486,10 @@ std::string resting_text(const RestingMode& mode, bool first) {
     const bool held = !mode.frictionless && !mode.holds[i].empty() &&
                       std::all_of(modes.begin(), modes.end(), [](const Mode& m) { return m.kind == Mode::Kind::Zero; });
     out += held ? held_text(system, one) : modes_text(system, one, {std::nullopt}, mode.equations->order, {}, {});
+    if (mode.forces_are_open[i])
+      out +=
+          "  the balance does not determine these forces (statically indeterminate): some within the limits are "
+          "shown\n";
     out += holds_text(system, mode, i);
   }
   return out;

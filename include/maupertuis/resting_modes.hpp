@@ -29,7 +29,9 @@ struct RestingMode {
   std::string text;           // "floor", "floor sticking"; "free"
   bool frictionless = false;  // friction acts in it, and is left out of its equations
   std::shared_ptr<const EquationsOfMotion> equations;
-  ModalStudy study;                                 // entries that are points of rest here
+  ModalStudy study;  // entries that are points of rest here
+  std::vector<bool>
+      forces_are_open;  // [entries] the balance does not determine them; these keep the limits of friction
   std::vector<std::vector<StaticHold>> holds;       // [entries] the frictions that act there
   std::vector<std::optional<RestingRange>> ranges;  // [entries] where one coordinate tells what friction holds
 };

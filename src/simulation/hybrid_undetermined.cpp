@@ -1,7 +1,7 @@
 #include "simulation/hybrid_undetermined.hpp"
 
 #include "linear_algebra/independent_rows.hpp"
-#include "simulation/contact/resting_forces.hpp"
+#include "linear_algebra/resting_forces.hpp"
 #include "simulation/mode_remarks.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include <maupertuis/resting_modes.hpp>
+#include "analysis/linearization/mode_at_rest.hpp"
 
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
@@ -15,133 +15,7 @@ namespace maupertuis {
 namespace {
 
 constexpr std::size_t most_sets = 64;  // of closed contacts
-constexpr double touches = 1e-9;       // of the sizes of the terms of a gap, and of the largest force
-constexpr double no_force = 1e-14;     // of a limit of friction
 constexpr double first_step = 1e-3, growth = 1.3, farthest = 1e6;
-
-/// A mode at rest as equations and numbers.
-class AtRest {
- public:
-  AtRest(const MechanicalSystem& system, ContactMode mode) : system_(system), mode_(std::move(mode)) {
-    Diagnostics unheard;  // the system passed its checks with its contacts
-    MechanicalSystem in_mode = system_in_mode(system, mode_);
-    in_mode.written = nullptr;
-    equations_ = std::make_shared<const EquationsOfMotion>(
-        *euler_lagrange(std::make_shared<const MechanicalSystem>(std::move(in_mode)), unheard));
-    points_.emplace(*equations_);
-  }
-
-  const ContactMode& mode() const { return mode_; }
-  const std::shared_ptr<const EquationsOfMotion>& equations() const { return equations_; }
-  const PointEquations& points() const { return *points_; }
-
-  Bindings at(const OperatingPoint& point) const {
-    Bindings b = parameter_bindings(system_);
-    for (std::size_t i = 0; i < point.q.size(); ++i) {
-      b[system_.coordinates[i].q] = point.q[i];
-      b[system_.coordinates[i].velocity] = 0;
-      b[system_.coordinates[i].acceleration] = 0;
-    }
-    b[system_.context->time()] = point.t;
-    for (const Contact& c : system_.contacts) b[c.multiplier] = 0;
-    for (std::size_t i = 0; i < system_.contacts.size() + system_.frictions.size(); ++i)
-      for (const Expr& m : friction_of(system_, i).multipliers) b[m] = 0;
-    for (std::size_t k = 0; k < equations_->multipliers.size(); ++k)
-      b[equations_->multipliers[k]] = point.multipliers[k];
-    return b;
-  }
-  double value(Expr e, const Bindings& b) const { return evaluate(in_terms_of_motion(system_, {&e, 1}).front(), b); }
-
-  /// Closed contacts press and open ones are open, by more than rounding. `touching`: whether nothing but rounding is
-  /// missing.
-  bool presses(const OperatingPoint& point, bool* touching = nullptr, double gap_digits = touches) const {
-    const Bindings b = at(point);
-    double largest = 0;
-    for (const double x : point.multipliers) largest = std::max(largest, std::abs(x));
-    bool good = true;
-    if (touching) *touching = true;
-    for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-      const Contact& c = system_.contacts[i];
-      const double x = mode_.closed[i] ? value(c.multiplier, b) : value(c.gap, b),
-                   rounding =
-                       mode_.closed[i] ? touches * std::max(largest, balanced(c, b)) : gap_digits * size(c.gap, b);
-      good = good && x > rounding;
-      if (touching) *touching = *touching && x >= -rounding;
-    }
-    return good;
-  }
-
-  /// Whether no open contact comes nearer or goes farther along this translation.
-  bool is_free_along(const Translation& translation) const {
-    for (std::size_t i = 0; i < system_.contacts.size(); ++i)
-      for (std::size_t k = 0; k < system_.coordinates.size(); ++k)
-        if (!mode_.closed[i] && translation.direction[k] != 0 &&
-            !differentiate(system_.contacts[i].gap, system_.coordinates[k].q).is_zero())
-          return false;
-    return true;
-  }
-
-  std::vector<StaticHold> holds(const OperatingPoint& point) const {
-    const Bindings b = at(point);
-    std::vector<StaticHold> out;
-    for (std::size_t i = 0; i < mode_.friction.size(); ++i) {
-      const Friction& f = friction_of(system_, i);
-      const bool acts = i >= system_.contacts.size() || mode_.closed[i];
-      if (!f.present() || !acts || slides(mode_.friction[i])) continue;
-      const Expr normal = normal_force(system_, mode_, i);
-      const double limit = f.sticking ? HUGE_VAL : value(f.static_, b) * (normal ? std::abs(value(normal, b)) : 1);
-      const std::string name =
-          i < system_.contacts.size() ? system_.contact_label(i) : system_.frictions[i - system_.contacts.size()].name;
-      const double force = force_of(f, b);
-      const bool is_rounding = force <= no_force * limit && std::isfinite(limit);
-      out.push_back({name, is_rounding ? 0.0 : force, limit, dimension_of_friction(i)});
-    }
-    return out;
-  }
-  Dimension dimension_of_friction(std::size_t i) const {
-    if (i < system_.contacts.size()) return dimensions::force();
-    const std::string& name = system_.frictions[i - system_.contacts.size()].name;
-    for (const Coordinate& c : system_.coordinates)
-      if (c.name == name) return system_.lagrangian_dimension / c.dimension;
-    return {};
-  }
-  static bool slides(FrictionState state) { return state != FrictionState::None && state != FrictionState::Stick; }
-  double force_of(const Friction& f, const Bindings& b) const {
-    double square = 0;
-    for (const Expr& m : f.multipliers) square += std::pow(value(m, b), 2);
-    return std::sqrt(square);
-  }
-  bool friction_holds(const OperatingPoint& point) const {
-    const auto all = holds(point);
-    return std::all_of(all.begin(), all.end(), [](const StaticHold& h) { return h.force <= h.limit; });
-  }
-
- private:
-  /// The forces that balance where the contact pushes, in units of its λ.
-  double balanced(const Contact& c, const Bindings& b) const {
-    double out = 0;
-    for (std::size_t k = 0; k < system_.coordinates.size(); ++k) {
-      const double slope = std::abs(value(differentiate(c.gap, system_.coordinates[k].q), b));
-      if (!(slope > 0)) continue;
-      double forces = size(equations_->generalized_forces[k], b);
-      for (const EnergyTerm& term : system_.potential)
-        forces += std::abs(value(differentiate(term.value, system_.coordinates[k].q), b));
-      out = std::max(out, forces / slope);
-    }
-    return out;
-  }
-
-  double size(Expr e, const Bindings& b) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < (e.is(Kind::Sum) ? e.size() : 1); ++i)
-      sum += std::abs(value(e.is(Kind::Sum) ? e[i] : e, b));
-    return sum;
-  }
-  const MechanicalSystem& system_;
-  ContactMode mode_;
-  std::shared_ptr<const EquationsOfMotion> equations_;
-  std::optional<PointEquations> points_;
-};
 
 /// Sets of closed contacts, the smaller ones first.
 std::vector<std::vector<bool>> sets_of(std::size_t contacts) {
@@ -192,17 +66,30 @@ ContactMode mode_with(const MechanicalSystem& system, const std::vector<bool>& c
 /// What is asked of the equations of a mode: all of its points of rest, or one.
 using Question = std::function<std::optional<ModalStudy>(const PointEquations&, Diagnostics&)>;
 
+using Presses = ModeAtRest::Presses;
+
+/// Gives an entry its forces: where it moves beside contacts that others share, they bend what it feels.
+void give_forces(const ModeAtRest& mode, const ModalStudy& study, const OperatingPoint& point, ModalEntry& e) {
+  if (e.linearization.point.multipliers == point.multipliers) return;
+  e.equilibrium.point.multipliers = e.linearization.point.multipliers = point.multipliers;
+  if (e.linearization.independent.empty() || !e.side.empty()) return;
+  e.linearization = linearize(mode.points(), point).linearization;
+  e.analysis = modal_analysis(mode.points(), e.linearization, study.translations, &e.equilibrium);
+}
+
 /// The entries of a study at which its mode rests.
-template <class Keep>
-ModalStudy resting(const AtRest& mode, const Question& ask, bool& touched, const Keep& keep) {
+ModalStudy resting(const ModeAtRest& mode, const Question& ask, bool& touched) {
   Diagnostics unheard;  // a mode without equilibria is no mistake
   auto study = ask(mode.points(), unheard);
   if (!study) return {};
-  std::erase_if(study->entries, [&](const ModalEntry& e) {
-    bool touching = false;
-    const bool rests = e.equilibrium.at_rest && mode.presses(e.linearization.point, &touching);
-    touched = touched || (e.equilibrium.at_rest && !rests && touching);
-    return !rests || !keep(e.linearization.point);
+  std::erase_if(study->entries, [&](ModalEntry& e) {
+    const OperatingPoint& point = e.linearization.point;
+    const auto touching = e.equilibrium.at_rest ? mode.touching(point) : std::nullopt;
+    const auto rests =
+        touching == mode.mode().closed ? mode.with_forces(point, Presses::MoreThanRounding) : std::nullopt;
+    touched = touched || (touching && !rests && mode.with_forces(point, Presses::AtMostPullsByRounding));
+    if (rests) give_forces(mode, *study, *rests, e);
+    return !rests;
   });
   for (ModalEntry& e : study->entries) {
     const bool moves = !e.linearization.independent.empty() || !e.linearization.independent_velocities.empty();
@@ -218,7 +105,7 @@ ModalStudy resting(const AtRest& mode, const Question& ask, bool& touched, const
 /// How far one coordinate goes from a point while friction holds.
 class RangeSearch {
  public:
-  RangeSearch(const AtRest& sticking, const MechanicalSystem& system) : sticking_(sticking), system_(system) {}
+  RangeSearch(const ModeAtRest& sticking, const MechanicalSystem& system) : sticking_(sticking), system_(system) {}
 
   std::optional<RestingRange> about(const OperatingPoint& point) const {
     EquilibriumSearch search;
@@ -251,7 +138,7 @@ class RangeSearch {
   /// Up to where the next contact touches.
   bool holds_at(const OperatingPoint& from, std::size_t k, double value) const {
     const auto there = moved_to(from, k, value);
-    return there && sticking_.presses(*there, nullptr, 0) && sticking_.friction_holds(*there);
+    return there && sticking_.has_gaps(*there) && sticking_.with_forces(*there, Presses::NotLessThanZero);
   }
 
   double end(const OperatingPoint& from, std::size_t k, int direction) const {
@@ -273,7 +160,7 @@ class RangeSearch {
     return std::abs(found) <= 1e-15 * size ? 0 : found;
   }
 
-  const AtRest& sticking_;
+  const ModeAtRest& sticking_;
   const MechanicalSystem& system_;
 };
 
@@ -299,15 +186,15 @@ std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::
                                      const MotionState& start, const Question& ask, bool& touched) {
   const ContactMode sticks = mode_with(system, closed, true, start), slides = mode_with(system, closed, false, start);
   const bool rubs = !(sticks == slides);
-  const AtRest plain(system, slides);
+  const ModeAtRest plain(system, slides);
   RestingMode out;
-  out.study = resting(plain, ask, touched, [](const OperatingPoint&) { return true; });
+  out.study = resting(plain, ask, touched);
   out.frictionless = rubs;
-  const AtRest* in = &plain;
-  std::optional<AtRest> sticking;
+  const ModeAtRest* in = &plain;
+  std::optional<ModeAtRest> sticking;
   if (rubs) sticking.emplace(system, sticks);
   if (rubs && out.study.entries.empty()) {
-    out.study = resting(*sticking, ask, touched, [&](const OperatingPoint& p) { return sticking->friction_holds(p); });
+    out.study = resting(*sticking, ask, touched);
     out.frictionless = false;
     in = &*sticking;
   }
@@ -316,6 +203,7 @@ std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::
   out.text = text_of(system, out.mode);
   out.equations = in->equations();
   for (const ModalEntry& e : out.study.entries) {
+    out.forces_are_open.push_back(in->leaves_forces_open(e.linearization.point));
     out.holds.push_back(in->holds(e.linearization.point));
     out.ranges.push_back(rubs ? RangeSearch(*sticking, system).about(e.linearization.point) : std::nullopt);
   }

@@ -140,3 +140,60 @@ TEST_CASE("a contact that balanced forces leave without pressing does not count 
   }
   CHECK(holds);
 }
+
+TEST_CASE("a box on a rough slope rests on two feet wherever some forces within the limits of friction hold it") {
+  // The shortest forces share the friction equally, which the upper foot alone cannot; together they can to tan α.
+  const auto flat = [](const char* friction) {
+    const std::string rubs = std::string(" friction ") + friction + " slip x' + ";
+    const ModelText m(
+        "dimensionless\nparam α = 0.35\ncoord x, z : number, θ : angle\n"
+        "T = 1/2 (x'^2 + z'^2) + 1/12 θ'^2\nV = x sin α + z cos α\n"
+        "contact z - 1/2 (cos θ + sin θ) >= 0" +
+        rubs +
+        "1/2 (cos θ + sin θ) θ' name left\n"
+        "contact z - 1/2 (cos θ - sin θ) >= 0" +
+        rubs + "1/2 (cos θ - sin θ) θ' name right\n");
+    std::optional<RestingMode> out;
+    Diagnostics told;  // E1308 where it rests nowhere
+    for (RestingMode& mode : rests(m, told))
+      if (mode.text == "left sticking, right sticking") out = std::move(mode);
+    return out;
+  };
+  for (const char* friction : {"0.8", "0.5", "0.37"}) {
+    CAPTURE(friction);
+    const auto held = flat(friction);
+    REQUIRE(held);
+    CHECK(held->forces_are_open.at(0));
+    CHECK(held->study.entries.at(0).equilibrium.point.q[2] == 0);
+    double friction_force = 0;
+    for (const StaticHold& h : held->holds.at(0)) {
+      CHECK(h.force <= h.limit);
+      friction_force += h.force;
+    }
+    CHECK(friction_force == doctest::Approx(std::sin(0.35)).epsilon(1e-12));
+  }
+  CHECK_FALSE(flat("0.36"));  // tan 0.35 = 0.365
+}
+
+TEST_CASE("legs that the balance leaves open press wherever they can, also where the shortest forces would pull") {
+  // Equal legs at −1, 0.8, 1 under a load at −0.9 share it with −0.019 on the last one by least squares.
+  const auto plate = [](const char* load) {
+    return ModelText(std::string("dimensionless\ncoord x, z : number, θ : angle\nT = 1/2 (x'^2 + z'^2 + θ'^2)\n"
+                                 "V = x^2 + z + ") +
+                     load +
+                     " sin θ\ncontact z - sin θ >= 0 name a\n"
+                     "contact z + 0.8 sin θ >= 0 name b\ncontact z + sin θ >= 0 name c\n");
+  };
+  bool rests_flat = false;
+  for (const RestingMode& mode : rests(plate("(-0.9)"))) {
+    if (mode.text != "a, b, c") continue;
+    const std::vector<double>& force = mode.study.entries.at(0).equilibrium.point.multipliers;
+    rests_flat = mode.study.entries[0].equilibrium.point.q[2] == 0;
+    CHECK(mode.forces_are_open.at(0));
+    for (const double x : force) CHECK(x > 1e-9);
+    CHECK(force[0] + force[1] + force[2] == doctest::Approx(1).epsilon(1e-12));
+    CHECK(-force[0] + 0.8 * force[1] + force[2] == doctest::Approx(-0.9).epsilon(1e-12));
+  }
+  CHECK(rests_flat);
+  for (const RestingMode& mode : rests(plate("(-1.1)"))) CHECK(mode.text != "a, b, c");
+}

@@ -1,6 +1,6 @@
 // Rests whose friction several places share: tied together by constraints, many legs of one body.
+#include "linear_algebra/resting_forces.hpp"
 #include "run_text.hpp"
-#include "simulation/contact/resting_forces.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "simulation/contact/resting_forces.hpp"
+#include "linear_algebra/resting_forces.hpp"
 
 #include "linear_algebra/least_distance.hpp"
 #include "linear_algebra/non_negative_least_squares.hpp"

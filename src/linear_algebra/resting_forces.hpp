@@ -1,5 +1,5 @@
 #pragma once
-#include "simulation/contact/cone_forces.hpp"
+#include "linear_algebra/cone_problem.hpp"
 
 #include <optional>
 
