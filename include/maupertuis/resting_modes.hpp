@@ -36,14 +36,22 @@ struct RestingMode {
   std::vector<std::optional<RestingRange>> ranges;  // [entries] where one coordinate tells what friction holds
 };
 
+struct RestingModes {
+  std::vector<RestingMode> found;  // by the number of closed contacts, then in their order
+  std::size_t sets_looked_at = 0;  // of closed contacts
+  double sets = 1;                 // that there are
+  bool all_sets() const { return static_cast<double>(sets_looked_at) >= sets; }
+};
+
 /// The points of rest of a system with contacts and friction, each with the linearization of its mode: contacts that
-/// are closed and press are constraints. Where friction acts the points are those at which no friction is needed, with
-/// the equations without it, and beside them what static friction holds; where there are none, points that friction
-/// holds. Of up to 64 sets of closed contacts, the smaller ones first. Points where a closed contact does not press, or
-/// an open one touches, are left out. Empty, with E1308, where there is none.
+/// are closed and press are constraints, those and no others that touch there. Where friction acts the points are those
+/// at which no friction is needed, with the equations without it, and beside them what static friction holds; where
+/// there are none, points that friction holds. Of up to six contacts all sets of closed ones are looked at, of more 64:
+/// those that touch at the start, or where the potential is lowest downhill from there, all together, and the smaller
+/// ones; then those that are met. Points where a closed contact cannot press are left out. Empty, with E1308, where
+/// there is none.
 /// Precondition: no reactions stand in normal forces (with_reactions).
-std::vector<RestingMode> resting_modes(const MechanicalSystem& system, const MotionState& start,
-                                       Diagnostics& diagnostics);
+RestingModes resting_modes(const MechanicalSystem& system, const MotionState& start, Diagnostics& diagnostics);
 
 /// The mode that rests at a point, given as to modal_study_at; the first of them in that order. Nothing, with E1308,
 /// where none does.

@@ -241,14 +241,20 @@ ExitCode rest(Study& study, const MotionState& start, Console& console) {
   MechanicalSystem system = study.model()->system;
   for (Friction& f : system.frictions)
     if (f.normal) f.normal = with_reactions(*study.equations(), {&f.normal, 1}).front();
-  const std::vector<RestingMode> found = resting_modes(system, start, study.diagnostics());
+  const RestingModes rests = resting_modes(system, start, study.diagnostics());
   Json document = json_document("modes");
   document["system"] = system.name;
   document["resting"] = Json::array();
-  for (const RestingMode& mode : found) {
+  document["sets_of_contacts"] = {{"looked_at", rests.sets_looked_at}, {"all", rests.sets}};
+  for (const RestingMode& mode : rests.found) {
     document["resting"].push_back(resting_document(mode));
-    if (!console.json()) console.print(resting_text(mode, &mode == &found.front()));
+    if (!console.json()) console.print(resting_text(mode, &mode == &rests.found.front()));
   }
+  if (!console.json() && !rests.found.empty() && !rests.all_sets())
+    console.print(
+        fmt::format("\n{} of {:.6g} sets of closed contacts were looked at: those of the start and of the "
+                    "lowest place, all, and the smaller ones. --mode NAME looks at another.\n",
+                    rests.sets_looked_at, rests.sets));
   return finish(console, study, document);
 }
 

@@ -63,10 +63,10 @@ constexpr CodeEntry entries[] = {
      "V = 1/2 k x^2 + 1/2 K max(x, 0)^2\n"},
     {"E1308", "no point of rest in any mode of the contacts",
      "With contacts `maup modes` looks for rest in each mode: the forces balance, contacts that are closed press (λ > "
-     "0), "
-     "the others are open, and static friction holds what is left over. A point at which a closed contact would have "
-     "to "
-     "pull is none. `--mode floor` looks at the equations of one mode whatever its contacts do.",
+     "0), the others are open, and static friction holds what is left over. A point at which a closed contact would "
+     "have to pull is none. Of more than six contacts not all sets of closed ones are looked at: those that touch at "
+     "the "
+     "start, or below it, come first. `--mode floor` looks at the equations of one mode whatever its contacts do.",
      "# maup modes\nparam m = 1 kg, g = 9.81 m/s^2, α = 20 deg\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"
      "V = m g (n cos α - s sin α)\ncontact n >= 0 friction 0.3 slip s' name plane\n",
      "# maup modes\nparam m = 1 kg, g = 9.81 m/s^2, α = 20 deg\ncoord s, n : length\nT = 1/2 m (s'^2 + n'^2)\n"

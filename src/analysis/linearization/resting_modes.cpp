@@ -1,4 +1,6 @@
+#include "analysis/linearization/contact_sets.hpp"
 #include "analysis/linearization/mode_at_rest.hpp"
+#include "analysis/linearization/point_equations.hpp"
 
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
@@ -6,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -14,22 +15,8 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t most_sets = 64;  // of closed contacts
+constexpr double one_pose = 1e-6;  // of typical sizes
 constexpr double first_step = 1e-3, growth = 1.3, farthest = 1e6;
-
-/// Sets of closed contacts, the smaller ones first.
-std::vector<std::vector<bool>> sets_of(std::size_t contacts) {
-  std::vector<std::vector<bool>> out;
-  const std::size_t looked_at = std::min<std::size_t>(contacts, 20);
-  for (std::size_t size = 0; size <= looked_at && out.size() < most_sets; ++size)
-    for (std::size_t bits = 0; bits < (std::size_t{1} << looked_at) && out.size() < most_sets; ++bits) {
-      if (static_cast<std::size_t>(std::popcount(bits)) != size) continue;
-      std::vector<bool> closed(contacts, false);
-      for (std::size_t i = 0; i < looked_at; ++i) closed[i] = ((bits >> i) & 1U) != 0;
-      out.push_back(std::move(closed));
-    }
-  return out;
-}
 
 /// v_t of friction i while nothing moves: that of a belt.
 double slip_at_rest(const MechanicalSystem& system, std::size_t i, const MotionState& start) {
@@ -77,18 +64,29 @@ void give_forces(const ModeAtRest& mode, const ModalStudy& study, const Operatin
   e.analysis = modal_analysis(mode.points(), e.linearization, study.translations, &e.equilibrium);
 }
 
-/// The entries of a study at which its mode rests.
-ModalStudy resting(const ModeAtRest& mode, const Question& ask, bool& touched) {
+/// What the modes in which rest is looked for meet beside their own rests.
+struct Elsewhere {
+  struct Pose {
+    std::vector<bool> touching;  // more contacts than are closed in the mode that found it
+    Equilibrium equilibrium;
+  };
+  std::vector<Pose> poses;
+  bool touched = false;  // forces balance somewhere, and a contact that touches does not press
+};
+
+/// The entries of a study at which its mode rests, all that touch being closed.
+ModalStudy resting(const ModeAtRest& mode, const Question& ask, Elsewhere& elsewhere) {
   Diagnostics unheard;  // a mode without equilibria is no mistake
   auto study = ask(mode.points(), unheard);
   if (!study) return {};
   std::erase_if(study->entries, [&](ModalEntry& e) {
     const OperatingPoint& point = e.linearization.point;
     const auto touching = e.equilibrium.at_rest ? mode.touching(point) : std::nullopt;
-    const auto rests =
-        touching == mode.mode().closed ? mode.with_forces(point, Presses::MoreThanRounding) : std::nullopt;
-    touched = touched || (touching && !rests && mode.with_forces(point, Presses::AtMostPullsByRounding));
+    if (touching && touching != mode.mode().closed) elsewhere.poses.push_back({*touching, e.equilibrium});
+    if (touching != mode.mode().closed) return true;
+    const auto rests = mode.with_forces(point, Presses::MoreThanRounding);
     if (rests) give_forces(mode, *study, *rests, e);
+    elsewhere.touched = elsewhere.touched || (!rests && mode.with_forces(point, Presses::AtMostPullsByRounding));
     return !rests;
   });
   for (ModalEntry& e : study->entries) {
@@ -183,18 +181,18 @@ std::string text_of(const MechanicalSystem& system, const ContactMode& mode) {
 }
 
 std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::vector<bool>& closed,
-                                     const MotionState& start, const Question& ask, bool& touched) {
+                                     const MotionState& start, const Question& ask, Elsewhere& elsewhere) {
   const ContactMode sticks = mode_with(system, closed, true, start), slides = mode_with(system, closed, false, start);
   const bool rubs = !(sticks == slides);
   const ModeAtRest plain(system, slides);
   RestingMode out;
-  out.study = resting(plain, ask, touched);
+  out.study = resting(plain, ask, elsewhere);
   out.frictionless = rubs;
   const ModeAtRest* in = &plain;
   std::optional<ModeAtRest> sticking;
   if (rubs) sticking.emplace(system, sticks);
   if (rubs && out.study.entries.empty()) {
-    out.study = resting(*sticking, ask, touched);
+    out.study = resting(*sticking, ask, elsewhere);
     out.frictionless = false;
     in = &*sticking;
   }
@@ -210,37 +208,172 @@ std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::
   return out;
 }
 
-void refuse_no_rest(bool touched, Diagnostics& diagnostics) {
+/// Whether two rests of a mode are one, also as members of a family or moved along a translation.
+bool are_one_pose(const MechanicalSystem& system, const std::vector<Translation>& translations, const Equilibrium& a,
+                  const Equilibrium& b) {
+  const std::vector<double> sizes = typical_sizes(system, {a.point.t, a.point.q, a.point.v});
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const bool moves = std::any_of(translations.begin(), translations.end(),
+                                   [&](const Translation& t) { return t.direction[k] != 0; });
+    const auto along = [&](const Equilibrium& x) {
+      return x.family > 0 && std::find(x.family_along.begin(), x.family_along.end(), k) != x.family_along.end();
+    };
+    if (moves || (along(a) && along(b))) continue;
+    const double apart = std::abs(a.point.q[k] - b.point.q[k]);
+    const bool one_turn = system.coordinates[k].kind == "angle" &&
+                          std::max(std::abs(a.point.q[k]), std::abs(b.point.q[k])) < std::numbers::pi + one_pose;
+    if (apart > one_pose * sizes[k] && !(one_turn && std::abs(apart - 2 * std::numbers::pi) <= one_pose)) return false;
+  }
+  return true;
+}
+
+/// Looks for rest in one set of closed contacts after the other.
+class SearchOfRests {
+ public:
+  SearchOfRests(const MechanicalSystem& system, const MotionState& start) : system_(system), start_(start) {}
+
+  /// Rests with these contacts closed.
+  void look(const std::vector<bool>& closed, const Question& ask) {
+    looked_at_.push_back(closed);
+    if (auto found = rest_with(system_, closed, start_, ask, elsewhere_)) take(*std::move(found));
+  }
+
+  /// Rests that were met by fewer contacts than touch there: each belongs to the mode in which all of them are closed.
+  void look_where_more_touch() {
+    std::vector<Elsewhere::Pose> poses;
+    std::swap(poses, elsewhere_.poses);
+    while (!poses.empty()) {
+      const std::vector<bool> closed = poses.front().touching;
+      std::vector<Equilibrium> places;
+      std::erase_if(poses, [&](const Elsewhere::Pose& pose) {
+        if (pose.touching != closed) return false;
+        if (!knows(closed, pose.equilibrium)) places.push_back(pose.equilibrium);
+        return true;
+      });
+      if (places.empty()) continue;
+      look(closed, [&](const PointEquations& points, Diagnostics& d) { return study_near(points, places, d); });
+    }
+  }
+
+  /// By the number of contacts, then in their order.
+  std::vector<RestingMode> in_order() && {
+    const auto count = [](const RestingMode& m) {
+      return std::count(m.mode.closed.begin(), m.mode.closed.end(), true);
+    };
+    std::stable_sort(found_.begin(), found_.end(), [&](const RestingMode& a, const RestingMode& b) {
+      return count(a) != count(b) ? count(a) < count(b) : a.mode.closed > b.mode.closed;
+    });
+    return std::move(found_);
+  }
+
+  bool found_any() const { return !found_.empty(); }
+  bool touched() const { return elsewhere_.touched; }
+  /// Sets of contacts.
+  std::size_t looked_at() const {
+    std::vector<std::vector<bool>> sets = looked_at_;
+    std::sort(sets.begin(), sets.end());
+    return static_cast<std::size_t>(std::unique(sets.begin(), sets.end()) - sets.begin());
+  }
+
+ private:
+  std::optional<ModalStudy> study_near(const PointEquations& points, const std::vector<Equilibrium>& places,
+                                       Diagnostics& diagnostics) const {
+    std::optional<ModalStudy> out;
+    for (const Equilibrium& place : places) {
+      const MotionState there{place.point.t, place.point.q, std::vector<double>(place.point.q.size())};
+      auto study = modal_study_at(points, there, {}, diagnostics);
+      if (!study) continue;
+      if (!out)
+        out = std::move(*study);
+      else if (std::none_of(out->entries.begin(), out->entries.end(), [&](const ModalEntry& e) {
+                 return are_one_pose(system_, out->translations, e.equilibrium, study->entries.front().equilibrium);
+               }))
+        std::move(study->entries.begin(), study->entries.end(), std::back_inserter(out->entries));
+    }
+    return out;
+  }
+
+  bool knows(const std::vector<bool>& closed, const Equilibrium& place) const {
+    return std::any_of(found_.begin(), found_.end(),
+                       [&](const RestingMode& m) { return m.mode.closed == closed && holds_pose(m, place); });
+  }
+  bool holds_pose(const RestingMode& mode, const Equilibrium& place) const {
+    return std::any_of(mode.study.entries.begin(), mode.study.entries.end(), [&](const ModalEntry& e) {
+      return are_one_pose(system_, mode.study.translations, e.equilibrium, place);
+    });
+  }
+
+  /// Of a mode that rests elsewhere already the further poses.
+  void take(RestingMode more) {
+    const auto same =
+        std::find_if(found_.begin(), found_.end(), [&](const RestingMode& m) { return m.mode == more.mode; });
+    if (same == found_.end()) return found_.push_back(std::move(more));
+    for (std::size_t i = 0; i < more.study.entries.size(); ++i) {
+      if (holds_pose(*same, more.study.entries[i].equilibrium)) continue;
+      same->study.entries.push_back(std::move(more.study.entries[i]));
+      same->forces_are_open.push_back(more.forces_are_open[i]);
+      same->holds.push_back(std::move(more.holds[i]));
+      same->ranges.push_back(more.ranges[i]);
+    }
+  }
+
+  const MechanicalSystem& system_;
+  const MotionState& start_;
+  std::vector<RestingMode> found_;
+  std::vector<std::vector<bool>> looked_at_;
+  Elsewhere elsewhere_;
+};
+
+void refuse_no_rest(const SearchOfRests& search, double all, Diagnostics& diagnostics) {
+  const auto looked_at = static_cast<double>(search.looked_at());
   diagnostics.error(
-      "E1308", std::nullopt, "no point of rest was found in any mode of the contacts",
-      touched ? "There are points at which the forces balance and contacts touch without pressing: neighbours on one "
-                "side of them are free and those on the other are not, so that nothing is linear there."
-              : "At rest the forces balance, contacts that are closed press, and static friction holds what is left.",
-      "--mode looks at one mode, whether its contacts press or not; --at at one point of it.");
+      "E1308", std::nullopt,
+      looked_at < all ? fmt::format("no point of rest was found in the {} of {:.6g} sets of closed contacts that were "
+                                    "looked at",
+                                    looked_at, all)
+                      : "no point of rest was found in any mode of the contacts",
+      search.touched()
+          ? "There are points at which the forces balance and contacts touch without pressing: neighbours on one "
+            "side of them are free and those on the other are not, so that nothing is linear there."
+          : "At rest the forces balance, contacts that are closed press, and static friction holds what is left.",
+      looked_at < all ? "A start at rest, or next to it, says which contacts press; --mode looks at one mode."
+                      : "--mode looks at one mode, whether its contacts press or not; --at at one point of it.");
+}
+
+/// The start with the positions that are given.
+MotionState start_at(const MechanicalSystem& system, MotionState start, const std::vector<StartValue>& at) {
+  const Bindings parameters = parameter_bindings(system);
+  for (const StartValue& s : at)
+    if (s.order == 0) start.q[s.coordinate] = evaluate(in_terms_of_motion(system, {&s.value, 1}).front(), parameters);
+  return start;
 }
 
 }  // namespace
 
-std::vector<RestingMode> resting_modes(const MechanicalSystem& system, const MotionState& start,
-                                       Diagnostics& diagnostics) {
-  std::vector<RestingMode> out;
-  bool touched = false;
+RestingModes resting_modes(const MechanicalSystem& system, const MotionState& start, Diagnostics& diagnostics) {
+  const ContactSets sets = contact_sets(system, start);
+  SearchOfRests search(system, start);
   const Question ask = [&](const PointEquations& points, Diagnostics& d) { return modal_study(points, start, d); };
-  for (const auto& closed : sets_of(system.contacts.size()))
-    if (auto found = rest_with(system, closed, start, ask, touched)) out.push_back(std::move(*found));
-  if (out.empty()) refuse_no_rest(touched, diagnostics);
-  return out;
+  for (const auto& closed : sets.chosen) search.look(closed, ask);
+  search.look_where_more_touch();
+  if (!search.found_any()) refuse_no_rest(search, sets.all, diagnostics);
+  const std::size_t looked_at = search.looked_at();
+  return {std::move(search).in_order(), looked_at, sets.all};
 }
 
 std::optional<RestingMode> resting_mode_at(const MechanicalSystem& system, const MotionState& start,
                                            const std::vector<StartValue>& at, Diagnostics& diagnostics) {
-  bool touched = false;
+  const ContactSets sets = contact_sets(system, start_at(system, start, at));
+  SearchOfRests search(system, start);
   const Question ask = [&](const PointEquations& points, Diagnostics& d) {
     return modal_study_at(points, start, at, d);
   };
-  for (const auto& closed : sets_of(system.contacts.size()))
-    if (auto found = rest_with(system, closed, start, ask, touched)) return found;
-  refuse_no_rest(touched, diagnostics);
+  for (const auto& closed : sets.chosen) {
+    search.look(closed, ask);
+    search.look_where_more_touch();
+    if (search.found_any()) return std::move(std::move(search).in_order().front());
+  }
+  refuse_no_rest(search, sets.all, diagnostics);
   return std::nullopt;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<RestingMode> rests(const ModelText& m, Diagnostics& told) {
   const std::size_t n = m.system->coordinates.size();
-  return resting_modes(*m.system, {0, std::vector<double>(n), std::vector<double>(n)}, told);
+  return resting_modes(*m.system, {0, std::vector<double>(n), std::vector<double>(n)}, told).found;
 }
 std::vector<RestingMode> rests(const ModelText& m) {
   Diagnostics told;
@@ -196,4 +196,46 @@ TEST_CASE("legs that the balance leaves open press wherever they can, also where
   }
   CHECK(rests_flat);
   for (const RestingMode& mode : rests(plate("(-1.1)"))) CHECK(mode.text != "a, b, c");
+}
+
+TEST_CASE("one pose is said once, with all contacts that touch there") {
+  // On its legs and on its back; c0, c1, c2 alone balance it too, and sin π is rounding of the gap of c3.
+  std::string text = "dimensionless\ncoord x, z : number, θ : angle\nT = 1/2 (x'^2 + z'^2) + 1/24 θ'^2\nV = x^2 + z\n";
+  for (const char* leg : {"-1/2", "-1/6", "1/6", "1/2"}) text += std::string("contact z + (") + leg + ") sin θ >= 0\n";
+  std::size_t flat = 0;
+  for (const RestingMode& mode : rests(ModelText(text))) {
+    const auto closed = std::count(mode.mode.closed.begin(), mode.mode.closed.end(), true);
+    CHECK((closed == 1 || closed == 4));
+    if (closed == 4) flat += mode.study.entries.size();
+  }
+  CHECK(flat == 2);
+}
+
+TEST_CASE("of many contacts those are looked at that touch at the start, or below it, and all together") {
+  // Six blocks stand on the floor, springs carry c and g above it.
+  const auto blocks = [](double height) {
+    std::string text = "dimensionless\ncoord x : number\n", kinetic = "T = 1/2 x'^2", potential = "V = x^2", contacts;
+    for (const char c : std::string("abcdefgh")) {
+      const std::string z = std::string("z_") + c;
+      text += "coord " + z + " : number\n";
+      kinetic += " + 1/2 " + z + "'^2";
+
+      const bool carried = c == 'c' || c == 'g';
+      potential += carried ? " + (" + z + " - 1)^2" : " + " + z;
+      contacts += "contact " + z + " >= 0 name on_" + c + "\n";
+    }
+    const ModelText m(text + kinetic + "\n" + potential + "\n" + contacts);
+    Diagnostics told;
+    std::vector<double> q(9, height), v(9, 0.0);
+    return resting_modes(*m.system, {0, q, v}, told);
+  };
+  for (const double height : {0.0, 5.0}) {
+    CAPTURE(height);
+    const RestingModes rests = blocks(height);
+    REQUIRE(rests.found.size() == 1);
+    CHECK(rests.found[0].text == "on_a, on_b, on_d, on_e, on_f, on_h");
+    CHECK(rests.sets == 256);
+    CHECK(rests.sets_looked_at == 64);
+    CHECK_FALSE(rests.all_sets());
+  }
 }
