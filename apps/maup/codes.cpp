@@ -77,6 +77,10 @@ constexpr CodeEntry own_codes[] = {
      "does not take the others with it; one that does not come is left out, and the page says so. `--sections` "
      "computes the named ones alone.",
      "maup report chain.lag", "maup report chain.lag --budget 10min"},
+    {"W0827", "modes are left out by the budget",
+     "`maup derive --modes` derives and certifies the equations of one mode after the other, and has a budget of time, "
+     "20 s unless --budget says otherwise. Modes that do not come in it are left out; those that came are shown.",
+     "maup derive table.lag --modes", "maup derive table.lag --modes --budget 10min"},
     {"W0815", "an environment variable has an unknown value",
      "MAUPERTUIS_INSTRUCTIONS holds the vector instructions back: `none`, `avx2`, or `avx512` for all that the "
      "processor has. Any other word is left out of account.",

@@ -31,8 +31,9 @@ Study open_study(const ModelOptions& options) {
   return study;
 }
 
-Study study_in_mode(const SourceText& source, const ModelOptions& options, const std::string& mode) {
-  Study study(source, &interrupt_flag());
+Study study_in_mode(const SourceText& source, const ModelOptions& options, const std::string& mode,
+                    const Interrupt& interrupt) {
+  Study study(source, interrupt);
   put_in(study, options);
   study.fix_mode(mode);
   return study;

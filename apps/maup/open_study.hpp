@@ -14,7 +14,8 @@ Study open_study(const std::string& path);
 /// The same with the values of --set and --start.
 Study open_study(const ModelOptions& options);
 /// The same with a text that is there, in this mode of contacts and frictions.
-Study study_in_mode(const SourceText& source, const ModelOptions& options, const std::string& mode);
+Study study_in_mode(const SourceText& source, const ModelOptions& options, const std::string& mode,
+                    const Interrupt& interrupt);
 
 /// E0809 about what an option said, or a piece of it.
 void refuse_option(Study& study, const std::string& option, const std::string& typed, std::string message,

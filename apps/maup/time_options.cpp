@@ -63,4 +63,13 @@ void check_time_option(const char* option, const std::optional<std::string>& tex
   if (text) refuse_unit_that_is_a_name(option, *text, tree, diagnostics);
 }
 
+std::optional<double> budget_seconds(const std::string& text, Diagnostics& diagnostics) {
+  if (text == "none") return std::nullopt;
+  const auto seconds = parse_time(text);
+  if (!seconds || !(*seconds > 0) || *seconds > 1e8)
+    diagnostics.error("E0809", {}, fmt::format("--budget \"{}\" is no length of time.", text), {},
+                      "Write a positive time such as 20s or \"2 min\", or none.");
+  return seconds;
+}
+
 }  // namespace maupertuis::app

@@ -15,5 +15,7 @@ void refuse_unit_that_is_a_name(const std::string& option, const std::string& te
 /// The same of an option that is a time, or a part of π of one; E0809 where it is none.
 void check_time_option(const char* option, const std::optional<std::string>& text, const syntax::SyntaxTree* tree,
                        Diagnostics& diagnostics);
+/// The time of --budget; nothing for "none". What is no time is an error (E0809).
+std::optional<double> budget_seconds(const std::string& text, Diagnostics& diagnostics);
 
 }  // namespace maupertuis::app

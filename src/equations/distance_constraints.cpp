@@ -1,11 +1,12 @@
 #include "equations/distance_constraints.hpp"
 
-#include <maupertuis/evaluate.hpp>
+#include <maupertuis/scattered_point.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "equations/simplified.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 #include <tuple>
@@ -109,6 +110,73 @@ Rods::Rods(const MechanicalSystem& system) : system_(system), places_(places_of(
     reach_.emplace_back(ids.begin(), ids.end());
     for (const NodeId id : ids) depending_[id].push_back(i);
   }
+  ExprVector all;
+  for (const RodEnd& place : places_) all.insert(all.end(), place.position.begin(), place.position.end());
+  for (const Constraint& c : system.constraints) all.push_back(c.value);
+  for (const Contact& c : system.contacts) all.push_back(c.gap);
+  point_ = scattered_point(symbols_of(all));
+}
+
+const Rods::InNumbers& Rods::numbers_of(std::size_t place) const {
+  const auto [found, is_new] = numbers_.try_emplace(place);
+  InNumbers& out = found->second;
+  if (!is_new) return out;
+  out.position = evaluate(places_[place].position, point_);
+  for (const NodeId id : reach_[place]) {
+    ExprVector slopes;
+    for (const Expr& component : places_[place].position)
+      slopes.push_back(differentiate(component, system_.context->node(id)));
+    out.slopes.push_back(evaluate(slopes, point_));
+  }
+  return out;
+}
+
+Rods::Slopes Rods::slopes_of(Expr value, const Ids& support) const {
+  Slopes out;
+  for (const NodeId id : support) {
+    const Expr slope = differentiate(value, system_.context->node(id));
+    out[id] = evaluate(slope, point_);
+  }
+  return out;
+}
+
+/// ∂(d²/2)/∂q along a coordinate.
+Rods::Way Rods::way_along(const Pair& pair, NodeId id) const {
+  const InNumbers &a = numbers_of(pair.first), &b = numbers_of(pair.second);
+  Way out;
+  const auto add = [&](std::size_t place, const InNumbers& numbers, double sign) {
+    const Ids& reach = reach_[place];
+    const auto found = std::lower_bound(reach.begin(), reach.end(), id);
+    if (found == reach.end() || *found != id) return;
+    const std::vector<double>& slopes = numbers.slopes[static_cast<std::size_t>(found - reach.begin())];
+    for (std::size_t k = 0; k < slopes.size(); ++k) {
+      const double term = sign * (b.position[k] - a.position[k]) * slopes[k];
+      out.slope += term;
+      out.size += std::abs(term);
+    }
+  };
+  add(pair.first, a, -1), add(pair.second, b, 1);
+  return out;
+}
+
+/// Whether ∇φ and ∇d² are parallel at the scattered point, to rounding: what is not is no rod, and of the points of a
+/// body nearly all pairs are none. A place without a value there says nothing.
+bool Rods::may_be(const Slopes& of_phi, const Pair& pair) const {
+  constexpr double rounding = 1e-9;
+  const auto steepest = std::max_element(of_phi.begin(), of_phi.end(), [](const auto& x, const auto& y) {
+    return std::abs(x.second) < std::abs(y.second);
+  });
+  const Way most = way_along(pair, steepest->first);
+  if (std::abs(most.slope) <= rounding * most.size) return false;
+  const auto is_parallel_along = [&](NodeId id) {
+    const auto found = of_phi.find(id);
+    const double phi = found == of_phi.end() ? 0 : found->second;
+    const Way way = way_along(pair, id);
+    return !(std::abs(phi * most.slope - steepest->second * way.slope) >
+             rounding * (std::abs(phi) * most.size + std::abs(steepest->second) * way.size));
+  };
+  const Ids &a = reach_[pair.first], &b = reach_[pair.second];
+  return std::all_of(a.begin(), a.end(), is_parallel_along) && std::all_of(b.begin(), b.end(), is_parallel_along);
 }
 
 /// One of a pair depends on the first coordinate of φ; what the other ones of φ it leaves, its partner depends on.
@@ -144,9 +212,12 @@ std::optional<RodConstraint> Rods::find(const Constraint& constraint) const {
   if (constraint.level != Constraint::Level::Position) return std::nullopt;
   const std::set<NodeId> support = coordinates_in({&constraint.value, 1});
   if (support.empty()) return std::nullopt;
+  const Ids ids(support.begin(), support.end());
+  const Slopes of_phi = slopes_of(constraint.value, ids);
   std::optional<RodConstraint> other;
   std::size_t others = 0;
-  for (const Pair& pair : pairs_on({support.begin(), support.end()})) {
+  for (const Pair& pair : pairs_on(ids)) {
+    if (!may_be(of_phi, pair)) continue;
     const RodEnd &a = places_[pair.first], &b = places_[pair.second];
     auto rod = b.fixed ? between(system_, constraint, b, a, support)
                        : between(system_, constraint, a, b, support);  // from the fixed end

@@ -56,6 +56,16 @@ TEST_CASE("derive --modes: the equations of each mode, certified, that of the st
   const Json alone = json_of(maup({"derive", model, "--mode", "floor sliding +", "--json"}));
   CHECK(document["modes"][0]["equations"] == alone["equations"]);
 
+  // Eight derivations do not come in a thousandth of a second: those that do are shown, the others are told.
+  const Json short_of_time = json_of(maup({"derive", model, "--modes", "--budget", "1ms", "--json"}));
+  const std::size_t left_out = short_of_time["modes_left_out"];
+  CHECK(left_out > 0);
+  CHECK(short_of_time["modes"].size() + left_out == 8);
+  CHECK(short_of_time["diagnostics"][0]["code"] == "W0827");
+  CHECK(document["modes_left_out"] == 0);
+  CHECK(maup({"derive", model, "--budget", "1s"}).code == 2);
+  CHECK(maup({"derive", model, "--modes", "--budget", "soon"}).code == 2);
+
   CHECK(maup({"derive", model, "--modes", "--steps"}).code == 2);
   CHECK(maup({"derive", folder.write("p.lag", pendulum), "--modes"}).code == 2);
 }
@@ -103,4 +113,36 @@ TEST_CASE("a step of low order finds where a gap that swings within it closes") 
   // A flight is a polynomial of degree 2, one step at any order; the table swings seven times in it.
   const Outcome low = maup({"test", PROJECT_DIR "/models/ball_on_vibrating_table.lag", "--order", "4"});
   CHECK_MESSAGE(low.code == 0, low.err);
+}
+
+TEST_CASE("modes: a rest whose forces the balance leaves open is told with that, and sets that are left out") {
+  const Folder folder;
+  const std::string feet = folder.write(
+      "feet.lag",
+      "system feet\nparam m = 1 kg, g = 9.81 m/s^2, a = 0.1 m, α = 20 deg\ncoord x, z : length, θ : angle\n"
+      "body b mass m inertia m a^2/6 at (x, z) rotation angle θ\ngravity (-g sin α, -g cos α)\n"
+      "contact z + a/2*(-cos θ - sin θ) >= 0 friction 0.5 slip x' + a/2*(cos θ + sin θ) θ' name left\n"
+      "contact z + a/2*(-cos θ + sin θ) >= 0 friction 0.5 slip x' + a/2*(cos θ - sin θ) θ' name right\n"
+      "start z = a/2\n");
+  const Outcome told = maup({"modes", feet});
+  CHECK(contains(told.out, "Mode \"left sticking, right sticking\"\nz = 0.05 m, θ = 0\n  held by static friction"));
+  CHECK(contains(told.out, "the balance does not determine these forces (statically indeterminate)"));
+  CHECK_FALSE(contains(told.out, "were looked at"));
+  const Json document = json_of(maup({"modes", feet, "--json"}));
+  CHECK(document["sets_of_contacts"] == Json({{"looked_at", 4}, {"all", 4.0}}));
+  CHECK(document["resting"].back()["points"][0]["forces_determined"] == false);
+
+  std::string blocks = "system blocks\nparam m = 1 kg, g = 9.81 m/s^2, k = 40 N/m\ncoord x : length\n", kinetic,
+              contacts;
+  for (const char c : std::string("abcdefgh")) {
+    const std::string z = std::string("z_") + c;
+    blocks += "coord " + z + " : length\n";
+    kinetic += " + 1/2 m " + z + "'^2";
+    contacts += "V += m g " + z + "\ncontact " + z + " >= 0 name on_" + c + "\n";
+  }
+  const Outcome many =
+      maup({"modes", folder.write("blocks.lag", blocks + "T = 1/2 m x'^2" + kinetic + "\nV = 1/2 k x^2\n" + contacts)});
+  CHECK_MESSAGE(many.code == 0, many.err);
+  CHECK(contains(many.out, "Mode \"on_a, on_b, on_c, on_d, on_e, on_f, on_g, on_h\"\n"));
+  CHECK(contains(many.out, "64 of 256 sets of closed contacts were looked at"));
 }

@@ -6,6 +6,7 @@
 #include "interrupt.hpp"
 #include "outcome.hpp"
 #include "rates_form.hpp"
+#include "time_options.hpp"
 
 #include <fmt/format.h>
 
@@ -30,6 +31,7 @@ struct DeriveOptions {
   std::string certify = "standard";
   std::string emit;
   bool modes = false;
+  std::optional<std::string> budget;  // of --modes
 
   Form chosen_form() const {
     if (eliminate) return Form::Eliminated;
@@ -235,6 +237,7 @@ ExitCode emit_stage(const DeriveOptions& options, Study& study, Console& console
 // ------------------------------------------------------------------------------------------------------------- modes
 
 constexpr std::size_t few_modes = 8;  // shown all
+constexpr const char* usual_budget = "20s";
 
 /// That of the start, if the model has one from which a motion begins; else all is open and what rubs sticks.
 ContactMode first_mode(Study& study) {
@@ -251,17 +254,19 @@ ContactMode first_mode(Study& study) {
   return mode;
 }
 
-/// The equations of one mode, certified; or why it has none.
-void add_mode(const DeriveOptions& options, Study& whole, const ContactMode& mode, bool first, std::string& text,
-              Json& list) {
+/// The equations of one mode, certified; or why it has none. Adds nothing where it is interrupted.
+void add_mode(const DeriveOptions& options, Study& whole, const ContactMode& mode, bool first,
+              const Interrupt& interrupt, std::string& text, Json& list) {
   const std::string name = mode_text(whole.model()->system, mode);
   const std::string shown = name.empty() ? "free" : name;
-  Study study = study_in_mode(whole.source(), options.model, shown);
+  Study study = study_in_mode(whole.source(), options.model, shown, interrupt);
   study.derivation(false);
+  std::optional<InterruptScope> scope;  // of what is written of it, too
+  if (study.model()) scope.emplace(*study.model()->system.context, interrupt);
   const Certificate* certificate = study.certificate({.full = options.certify == "full"});
   EquationForm form;
   if (certificate) form = equation_form(options.chosen_form(), study);
-  text += fmt::format("{}Mode {}{}\n", text.empty() ? "" : "\n", shown, first ? ", in which the motion begins" : "");
+  text += fmt::format("Mode {}{}\n", shown, first ? ", in which the motion begins" : "");
   if (!certificate || study.wrong()) {
     const auto items = study.diagnostics().items();
     const auto error =
@@ -282,6 +287,13 @@ void add_mode(const DeriveOptions& options, Study& whole, const ContactMode& mod
   list.push_back(std::move(entry));
 }
 
+void warn_of_modes_left_out(std::size_t count, const std::string& budget, Diagnostics& diagnostics) {
+  diagnostics.warning("W0827", {}, fmt::format("{} mode{} left out", count, count == 1 ? " is" : "s are"),
+                      fmt::format("The budget of {} was used up before {} equations were derived and certified.",
+                                  budget, count == 1 ? "its" : "their"),
+                      "Give --modes more time, --budget 10min, or ask for one of them, --mode NAME.");
+}
+
 ExitCode derive_modes(const DeriveOptions& options, Study& study, Console& console) {
   Json document = json_document("derive");
   if (!study.equations()) return finish(console, study, document);
@@ -292,25 +304,36 @@ ExitCode derive_modes(const DeriveOptions& options, Study& study, Console& conso
                               "Without --modes `maup derive` shows its one set of equations.");
     return finish_usage(console, study, "derive");
   }
-  std::string text;
+  const auto seconds = budget_seconds(options.budget.value_or(usual_budget), study.diagnostics());
+  if (study.wrong()) return finish_usage(console, study, "derive");
   Json list = Json::array();
   const ContactMode start = first_mode(study);
   const bool begins = !study.model()->experiment.start.empty();
   const std::vector<ContactMode> modes = modes_to_show(system, start, few_modes);
+  const Deadline deadline(seconds);
   for (const ContactMode& mode : modes) {
-    if (interrupt_flag().load()) throw Interrupted();
-    add_mode(options, study, mode, begins && mode == start, text, list);
+    std::string text = list.empty() ? "" : "\n";
+    try {
+      add_mode(options, study, mode, begins && mode == start, &deadline.flag(), text, list);
+    } catch (const Interrupted&) {
+      break;
+    }
+    if (!console.json()) console.print(text);
   }
+  const std::size_t left_out = modes.size() - list.size();
   const double all = number_of_modes(system);
   document["system"] = system.name;
   document["number_of_modes"] = all;
   document["modes"] = std::move(list);
-  if (all > static_cast<double>(modes.size()))
-    text += fmt::format(
+  document["modes_left_out"] = left_out;
+  if (all > static_cast<double>(modes.size()) && !console.json())
+    console.print(fmt::format(
         "\n{} of {:.6g} modes: those that one contact or one friction makes of the first. --mode NAME shows "
         "another.\n",
-        modes.size(), all);
-  if (!console.json()) console.print(text);
+        modes.size() - left_out, all));
+  if (left_out > 0 && !interrupt_flag().load())
+    warn_of_modes_left_out(left_out, options.budget.value_or(usual_budget), study.diagnostics());
+  const Saving saving;
   return finish(console, study, document);
 }
 
@@ -347,6 +370,11 @@ ExitCode derive(const DeriveOptions& options, Console& console) {
                         options.model.mode)) {
     study.diagnostics().error("E0809", {}, "--modes goes with --form, --eliminate, --certify and --json alone.", {},
                               "--mode NAME shows one of them in every way.");
+    return finish_usage(console, study, "derive");
+  }
+  if (options.budget && !options.modes) {
+    study.diagnostics().error("E0809", {}, "--budget belongs to --modes.", "The equations of a model are shown whole.",
+                              "Leave it out.");
     return finish_usage(console, study, "derive");
   }
   if (options.modes) return derive_modes(options, study, console);
@@ -392,6 +420,10 @@ void add_derive(CommandLine& line) {
   command.add_flag(
       "--modes", options->modes,
       "The equations of each mode of contacts and friction; of many those next to where the motion begins");
+  command
+      .add_option("--budget", options->budget,
+                  "The time that --modes may take (default 20s), or none; modes that do not come in it are left out")
+      ->type_name("TIME");
   Option* form =
       command
           .add_option("--form", options->form,

@@ -7,6 +7,7 @@
 #include "quantity.hpp"
 #include "run_options.hpp"
 #include "section_budget.hpp"
+#include "time_options.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -245,16 +246,6 @@ class Page {
   PageFindings found_;
   bool derived_ = false;
 };
-
-/// The time of --budget; nothing for "none". What is no time is an error.
-std::optional<double> budget_seconds(const std::string& text, Diagnostics& diagnostics) {
-  if (text == "none") return std::nullopt;
-  const auto seconds = parse_time(text);
-  if (!seconds || !(*seconds > 0) || *seconds > 1e8)
-    diagnostics.error("E0809", {}, fmt::format("--budget \"{}\" is no length of time.", text), {},
-                      "Write a positive time such as 20s or \"2 min\", or none.");
-  return seconds;
-}
 
 void check_sections(const std::vector<std::string>& chosen, Diagnostics& diagnostics) {
   const auto& names = SectionBudget::names();
