@@ -305,7 +305,16 @@ Vector SteadyState::sizes_of_terms(const OperatingPoint& point) const {
 bool SteadyState::is_unbalanced(const OperatingPoint& point) const {
   constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), rounded_to = 1e-11;  // of sizes: zeros
   const System s = system_at(point);
-  const Vector z = unknowns(point).cwiseAbs(), terms = sizes_of_terms(point);
+  const Vector terms = sizes_of_terms(point);
+  Vector z = unknowns(point).cwiseAbs();
+  // Forces that constraints leave open are a shortest fit: 0 among them is rounding of the largest.
+  const auto m = static_cast<Index>(e_.m);
+  const Matrix by_multipliers = s.j.topRightCorner(static_cast<Index>(e_.n), m);
+  const bool are_open =
+      m > 0 && by_multipliers.allFinite() &&
+      least_squares(Equilibration(by_multipliers).of(by_multipliers), s.f.head(by_multipliers.rows()), rank_of_balance)
+              .rank < m;
+  if (are_open) z.tail(m) = z.tail(m).cwiseMax(z.tail(m).maxCoeff());
   for (Index i = 0; i < static_cast<Index>(e_.n); ++i) {
     double size = terms[i];
     for (Index j = 0; j < z.size(); ++j) {

@@ -239,3 +239,25 @@ TEST_CASE("of many contacts those are looked at that touch at the start, or belo
     CHECK_FALSE(rests.all_sets());
   }
 }
+
+TEST_CASE("a ladder between rough walls rests where it stands: the shortest of its open forces has a 0 in it") {
+  const auto ladder = [](double angle) {
+    const ModelText m(
+        "dimensionless\ncoord x, y : number, θ : angle\nT = 1/2 (x'^2 + y'^2) + 1/24 θ'^2\nV = y\n"
+        "contact y - 1/2 sin θ >= 0 friction 0.4 slip x' - 1/2 sin θ θ' name floor\n"
+        "contact x - 1/2 cos θ >= 0 friction 0.3 slip y' + 1/2 cos θ θ' name wall\n");
+    Diagnostics told;
+    std::vector<double> q{0.5 * std::cos(angle), 0.5 * std::sin(angle), angle}, v(3, 0.0);
+    for (RestingMode& mode : resting_modes(*m.system, {0, q, v}, told).found)
+      if (mode.text == "floor sticking, wall sticking") return std::optional(std::move(mode));
+    return std::optional<RestingMode>();
+  };
+  const auto held = ladder(1);
+  REQUIRE(held);
+  CHECK(held->study.entries.at(0).equilibrium.point.q[2] == doctest::Approx(1).epsilon(1e-12));
+  CHECK(held->forces_are_open.at(0));
+  // Down to tan θ = (1 - μ μ_w) / (2 μ) with the friction of both at its limit.
+  REQUIRE(held->ranges.at(0));
+  CHECK(held->ranges[0]->coordinate == 0);
+  CHECK(held->ranges[0]->to == doctest::Approx(0.5 * std::cos(std::atan(0.88 / 0.8))).epsilon(1e-9));
+}
