@@ -51,17 +51,54 @@ ContactMode mode_with(const MechanicalSystem& system, const std::vector<bool>& c
 }
 
 /// What is asked of the equations of a mode: all of its points of rest, or one.
-using Question = std::function<std::optional<ModalStudy>(const PointEquations&, Diagnostics&)>;
+struct Question {
+  std::function<std::optional<ModalStudy>(const PointEquations&, Diagnostics&)> ask;
+  bool is_of_all = false;  // of a family any member answers
+};
 
 using Presses = ModeAtRest::Presses;
 
-/// Gives an entry its forces: where it moves beside contacts that others share, they bend what it feels.
-void give_forces(const ModeAtRest& mode, const ModalStudy& study, const OperatingPoint& point, ModalEntry& e) {
-  if (e.linearization.point.multipliers == point.multipliers) return;
-  e.equilibrium.point.multipliers = e.linearization.point.multipliers = point.multipliers;
+/// Gives an entry its forces, or its place: where it moves beside contacts that others share, they bend what it feels.
+void put_at(const ModeAtRest& mode, const ModalStudy& study, const OperatingPoint& point, ModalEntry& e) {
+  const OperatingPoint& before = e.linearization.point;
+  if (before.multipliers == point.multipliers && before.q == point.q) return;
+  e.equilibrium.point = e.linearization.point = point;
   if (e.linearization.independent.empty() || !e.side.empty()) return;
   e.linearization = linearize(mode.points(), point).linearization;
   e.analysis = modal_analysis(mode.points(), e.linearization, study.translations, &e.equilibrium);
+}
+
+/// The rest of the mode with one coordinate at a value, next to a point.
+std::optional<OperatingPoint> rest_with_value(const ModeAtRest& mode, const OperatingPoint& from, std::size_t k,
+                                              double value) {
+  EquilibriumSearch search;
+  search.start = {from.t, from.q, std::vector<double>(from.q.size(), 0.0)};
+  search.start.q[k] = value;
+  search.fixed.q.assign(from.q.size(), false);
+  search.fixed.q[k] = true;
+  search.steady = false;
+  const auto found = equilibrium_near(mode.points(), search);
+  return found.empty() ? std::nullopt : std::optional(found.front().point);
+}
+
+/// The point with forces under which it rests. Of a family the search tells one member, and perhaps others rest: the
+/// nearest in steps of a twenty-fourth of a half turn, or of a typical size, along one of its coordinates.
+std::optional<OperatingPoint> with_forces_along(const ModeAtRest& mode, const Equilibrium& e) {
+  constexpr int most_members = 24;
+  if (auto here = mode.with_forces(e.point, Presses::MoreThanRounding)) return here;
+  if (e.family == 0 || e.family_along.empty()) return std::nullopt;
+  const MechanicalSystem& system = *mode.equations()->system;
+  const auto is_angle = [&](std::size_t k) { return system.coordinates[k].kind == "angle"; };
+  const auto angle = std::find_if(e.family_along.begin(), e.family_along.end(), is_angle);
+  const std::size_t k = angle == e.family_along.end() ? e.family_along.front() : *angle;
+  const double step = (is_angle(k) ? std::numbers::pi : typical_sizes(system, {0, e.point.q, {}})[k]) / most_members;
+  for (int member = 1; member <= most_members; ++member)
+    for (const int side : {1, -1}) {
+      const auto there = rest_with_value(mode, e.point, k, e.point.q[k] + side * member * step);
+      if (!there || mode.touching(*there) != mode.mode().closed) continue;
+      if (auto rests = mode.with_forces(*there, Presses::MoreThanRounding)) return rests;
+    }
+  return std::nullopt;
 }
 
 /// What the modes in which rest is looked for meet beside their own rests.
@@ -75,17 +112,18 @@ struct Elsewhere {
 };
 
 /// The entries of a study at which its mode rests, all that touch being closed.
-ModalStudy resting(const ModeAtRest& mode, const Question& ask, Elsewhere& elsewhere) {
+ModalStudy resting(const ModeAtRest& mode, const Question& question, Elsewhere& elsewhere) {
   Diagnostics unheard;  // a mode without equilibria is no mistake
-  auto study = ask(mode.points(), unheard);
+  auto study = question.ask(mode.points(), unheard);
   if (!study) return {};
   std::erase_if(study->entries, [&](ModalEntry& e) {
     const OperatingPoint& point = e.linearization.point;
     const auto touching = e.equilibrium.at_rest ? mode.touching(point) : std::nullopt;
     if (touching && touching != mode.mode().closed) elsewhere.poses.push_back({*touching, e.equilibrium});
     if (touching != mode.mode().closed) return true;
-    const auto rests = mode.with_forces(point, Presses::MoreThanRounding);
-    if (rests) give_forces(mode, *study, *rests, e);
+    const auto rests = question.is_of_all ? with_forces_along(mode, e.equilibrium)
+                                          : mode.with_forces(point, Presses::MoreThanRounding);
+    if (rests) put_at(mode, *study, *rests, e);
     elsewhere.touched = elsewhere.touched || (!rests && mode.with_forces(point, Presses::AtMostPullsByRounding));
     return !rests;
   });
@@ -123,19 +161,9 @@ class RangeSearch {
   }
 
  private:
-  std::optional<OperatingPoint> moved_to(const OperatingPoint& from, std::size_t k, double value) const {
-    EquilibriumSearch search;
-    search.start = {from.t, from.q, std::vector<double>(from.q.size(), 0.0)};
-    search.start.q[k] = value;
-    search.fixed.q.assign(from.q.size(), false);
-    search.fixed.q[k] = true;
-    search.steady = false;
-    const auto found = equilibrium_near(sticking_.points(), search);
-    return found.empty() ? std::nullopt : std::optional(found.front().point);
-  }
   /// Up to where the next contact touches.
   bool holds_at(const OperatingPoint& from, std::size_t k, double value) const {
-    const auto there = moved_to(from, k, value);
+    const auto there = rest_with_value(sticking_, from, k, value);
     return there && sticking_.has_gaps(*there) && sticking_.with_forces(*there, Presses::NotLessThanZero);
   }
 
@@ -181,18 +209,18 @@ std::string text_of(const MechanicalSystem& system, const ContactMode& mode) {
 }
 
 std::optional<RestingMode> rest_with(const MechanicalSystem& system, const std::vector<bool>& closed,
-                                     const MotionState& start, const Question& ask, Elsewhere& elsewhere) {
+                                     const MotionState& start, const Question& question, Elsewhere& elsewhere) {
   const ContactMode sticks = mode_with(system, closed, true, start), slides = mode_with(system, closed, false, start);
   const bool rubs = !(sticks == slides);
   const ModeAtRest plain(system, slides);
   RestingMode out;
-  out.study = resting(plain, ask, elsewhere);
+  out.study = resting(plain, question, elsewhere);
   out.frictionless = rubs;
   const ModeAtRest* in = &plain;
   std::optional<ModeAtRest> sticking;
   if (rubs) sticking.emplace(system, sticks);
   if (rubs && out.study.entries.empty()) {
-    out.study = resting(*sticking, ask, elsewhere);
+    out.study = resting(*sticking, question, elsewhere);
     out.frictionless = false;
     in = &*sticking;
   }
@@ -233,9 +261,9 @@ class SearchOfRests {
   SearchOfRests(const MechanicalSystem& system, const MotionState& start) : system_(system), start_(start) {}
 
   /// Rests with these contacts closed.
-  void look(const std::vector<bool>& closed, const Question& ask) {
+  void look(const std::vector<bool>& closed, const Question& question) {
     looked_at_.push_back(closed);
-    if (auto found = rest_with(system_, closed, start_, ask, elsewhere_)) take(*std::move(found));
+    if (auto found = rest_with(system_, closed, start_, question, elsewhere_)) take(*std::move(found));
   }
 
   /// Rests that were met by fewer contacts than touch there: each belongs to the mode in which all of them are closed.
@@ -251,7 +279,7 @@ class SearchOfRests {
         return true;
       });
       if (places.empty()) continue;
-      look(closed, [&](const PointEquations& points, Diagnostics& d) { return study_near(points, places, d); });
+      look(closed, {[&](const PointEquations& points, Diagnostics& d) { return study_near(points, places, d); }});
     }
   }
 
@@ -353,8 +381,9 @@ MotionState start_at(const MechanicalSystem& system, MotionState start, const st
 RestingModes resting_modes(const MechanicalSystem& system, const MotionState& start, Diagnostics& diagnostics) {
   const ContactSets sets = contact_sets(system, start);
   SearchOfRests search(system, start);
-  const Question ask = [&](const PointEquations& points, Diagnostics& d) { return modal_study(points, start, d); };
-  for (const auto& closed : sets.chosen) search.look(closed, ask);
+  const Question question{[&](const PointEquations& points, Diagnostics& d) { return modal_study(points, start, d); },
+                          true};
+  for (const auto& closed : sets.chosen) search.look(closed, question);
   search.look_where_more_touch();
   if (!search.found_any()) refuse_no_rest(search, sets.all, diagnostics);
   const std::size_t looked_at = search.looked_at();
@@ -365,11 +394,10 @@ std::optional<RestingMode> resting_mode_at(const MechanicalSystem& system, const
                                            const std::vector<StartValue>& at, Diagnostics& diagnostics) {
   const ContactSets sets = contact_sets(system, start_at(system, start, at));
   SearchOfRests search(system, start);
-  const Question ask = [&](const PointEquations& points, Diagnostics& d) {
-    return modal_study_at(points, start, at, d);
-  };
+  const Question question{
+      [&](const PointEquations& points, Diagnostics& d) { return modal_study_at(points, start, at, d); }};
   for (const auto& closed : sets.chosen) {
-    search.look(closed, ask);
+    search.look(closed, question);
     search.look_where_more_touch();
     if (search.found_any()) return std::move(std::move(search).in_order().front());
   }

@@ -256,6 +256,10 @@ TEST_CASE("a ladder between rough walls rests where it stands: the shortest of i
   REQUIRE(held);
   CHECK(held->study.entries.at(0).equilibrium.point.q[2] == doctest::Approx(1).epsilon(1e-12));
   CHECK(held->forces_are_open.at(0));
+  // Where it cannot stand, at 0.7 rad, steeper places are found.
+  const auto steeper = ladder(0.7);
+  REQUIRE(steeper);
+  CHECK(steeper->study.entries.at(0).equilibrium.point.q[2] > std::atan(0.88 / 0.8));
   // Down to tan θ = (1 - μ μ_w) / (2 μ) with the friction of both at its limit.
   REQUIRE(held->ranges.at(0));
   CHECK(held->ranges[0]->coordinate == 0);
