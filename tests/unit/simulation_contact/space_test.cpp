@@ -1,5 +1,6 @@
 // Friction in the plane of a contact in space: closed forms, a second integrator, the cones' own conditions.
 #include "linear_algebra/resting_forces.hpp"
+#include "simulation/contact/cone_forces.hpp"
 #include "simulation/contact/impact.hpp"
 #include "simulation/contact/space_impulse.hpp"
 
