@@ -265,3 +265,24 @@ TEST_CASE("a ladder between rough walls rests where it stands: the shortest of i
   CHECK(held->ranges[0]->coordinate == 0);
   CHECK(held->ranges[0]->to == doctest::Approx(0.5 * std::cos(std::atan(0.88 / 0.8))).epsilon(1e-9));
 }
+
+TEST_CASE("E1308 claims no more than was looked at") {
+  const auto message = [](const std::string& names) {
+    std::string text = "dimensionless\n", kinetic = "T = 0", potential = "V = 0", contacts;
+    for (const char c : names) {
+      const std::string z = std::string("z_") + c;
+      text += "coord " + z + " : number\n";
+      kinetic += " + 1/2 " + z + "'^2";
+      potential += " - " + z;  // away from the floor
+      contacts += "contact " + z + " >= 0\n";
+    }
+    Diagnostics told;
+    CHECK(rests(ModelText(text + kinetic + "\n" + potential + "\n" + contacts), told).empty());
+    REQUIRE(told.items().size() == 1);
+    CHECK(told.items().front().code == "E1308");
+    return told.items().front().message;
+  };
+  CHECK(message("abcdef") == "no point of rest was found in any mode of the contacts");
+  CHECK(message("abcdefg") ==
+        "no point of rest was found in the 64 of 128 sets of closed contacts that were looked at");
+}
