@@ -365,6 +365,7 @@ class Closer {
     if (f_begin.size() == 0 || f_end.size() == 0)
       return refuse_end(out_.end.state.t, "An acceleration has no value here.", *diagnostics_);
     const ReturnMap map = return_map(out_.begin, out_.end, out_.sizes);
+    if (map.directions.cols() == 0) return refuse_determined();
     const auto [left, right] = newton_equations(map, rest, f_begin, f_end);
     Eigen::JacobiSVD<Matrix> svd(left, Eigen::ComputeThinU | Eigen::ComputeThinV);
     svd.setThreshold(least_singular);
@@ -415,6 +416,14 @@ class Closer {
     constexpr double rounding = 1e-12;
     const auto stays = [&](const MotionState& s) { return gap(start, s).norm() <= rounding; };
     return seen.ended.empty() && (seen.rests || std::all_of(seen.states.begin(), seen.states.end(), stays));
+  }
+
+  bool refuse_determined() {
+    diagnostics_->error(
+        "E1401", place_of_start(), "no periodic motion was found near this start",
+        fmt::format("The constraints determine the whole motion, and after {:.9g} s it is not back.", *period_),
+        "Give a period after which the constraints are the same again, with --period.");
+    return false;
   }
 
   bool refuse_newton(double error) {

@@ -5,6 +5,7 @@
 #include <maupertuis/print.hpp>
 #include <maupertuis/transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -43,15 +44,17 @@ struct StateRelations::Impl {
   struct Sizes {
     Eigen::VectorXd value, relative;
     Eigen::MatrixXd slope;
-    double worst() const { return relative.allFinite() ? relative.lpNorm<Eigen::Infinity>() : HUGE_VAL; }
   };
-  /// Of a relation such as x' = 0 the terms are no measure: what the others' sizes leave of x' is rounding.
-  static bool fulfilled(const Sizes& here, const MotionState& s) {
+  static double size_of(const MotionState& s) {
     double square = 0;
     for (std::size_t i = 0; i < s.q.size(); ++i) square += s.q[i] * s.q[i] + s.v[i] * s.v[i];
+    return std::sqrt(square);
+  }
+  /// Of a relation such as x' = 0 the terms are no measure: what the others' sizes leave of x' is rounding, and what is
+  /// left of the x' that it began with. `size`: of the state, or of the one that it was moved from.
+  static bool fulfilled(const Sizes& here, double size, double within) {
     for (Eigen::Index i = 0; i < here.value.size(); ++i)
-      if (!(here.relative[i] <= good_enough) &&
-          !(std::abs(here.value[i]) <= rounding * here.slope.row(i).norm() * std::sqrt(square)))
+      if (!(here.relative[i] <= within) && !(std::abs(here.value[i]) <= rounding * here.slope.row(i).norm() * size))
         return false;
     return true;
   }
@@ -83,8 +86,10 @@ struct StateRelations::Impl {
 
   /// Least steps of what may move, halved while they do not come closer.
   bool newton(MotionState& s, const Eigen::VectorXd& may_move) const {
+    const MotionState before = s;
+    const double size = size_of(s);
     Sizes here = sizes(s);
-    for (int turn = 0; turn < most_turns && here.worst() > reached; ++turn) {
+    for (int turn = 0; turn < most_turns && !fulfilled(here, size, reached); ++turn) {
       if (!here.slope.allFinite() || !here.value.allFinite()) return false;
       const Eigen::MatrixXd slope = here.slope * may_move.asDiagonal();
       Eigen::VectorXd weight = slope.rowwise().norm();
@@ -103,7 +108,19 @@ struct StateRelations::Impl {
       }
       if (!closer) break;
     }
-    return fulfilled(here, s);
+    if (!fulfilled(here, std::max(size, size_of(s)), good_enough)) return false;
+    clear_rounding(s, before);
+    return true;
+  }
+
+  /// What is left of a value that came to 0 is 0, where the relations hold with it.
+  void clear_rounding(MotionState& s, const MotionState& before) const {
+    MotionState cleared = s;
+    for (std::size_t i = 0; i < s.q.size(); ++i) {
+      if (std::abs(s.q[i]) <= rounding * std::abs(before.q[i])) cleared.q[i] = 0;
+      if (std::abs(s.v[i]) <= rounding * std::abs(before.v[i])) cleared.v[i] = 0;
+    }
+    if (fulfilled(sizes(cleared), size_of(cleared), good_enough)) s = std::move(cleared);
   }
 
   /// Least steps move what need not be moved: positions for which others fulfil the relations are again what they were.
@@ -173,7 +190,9 @@ Settled StateRelations::settle(MotionState& state, const std::vector<bool>& fixe
   return Settled::Nowhere;
 }
 
-bool StateRelations::hold(const MotionState& state) const { return Impl::fulfilled(impl_->sizes(state), state); }
+bool StateRelations::hold(const MotionState& state) const {
+  return Impl::fulfilled(impl_->sizes(state), Impl::size_of(state), good_enough);
+}
 
 std::string StateRelations::worst_at(const MotionState& state) const {
   const Impl::Sizes here = impl_->sizes(state);
