@@ -7,8 +7,9 @@ namespace maupertuis::taylor {
 
 /// Why a motion ends where nothing is known of the zeros of a function (RootSearch::lost).
 constexpr const char* no_series_of_watched =
-    "A function of an event or of a switch has no series here, as where exp or cosh is beyond the range of numbers, so "
-    "that its zeros would not be seen. In another form it may stay finite: cosh(u) = 2 as sech(u) = 1/2.";
+    "A function of an event or of a switch has no series here, as where exp or cosh is beyond the range of numbers, or "
+    "swings within the rounding of time, so that its zeros would not be seen. In another form it may stay finite: "
+    "cosh(u) = 2 as sech(u) = 1/2.";
 
 /// Why equations give no expansion at a point. work: a KernelWorkspace, or one of another number type; is_finite:
 /// whether they give accelerations there.

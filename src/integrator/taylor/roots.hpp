@@ -119,6 +119,11 @@ class RootSearchOf {
   /// Where first() came to a stretch in which the function has values, but no series, as cosh u beyond the range of
   /// numbers: it ended there, without knowing of roots.
   const std::optional<T>& lost() const { return lost_; }
+  /// No function is followed through more pieces than this in a step: one that swings a billion times in it would keep
+  /// the search from ever coming back.
+  void allow(std::size_t pieces) { allowed_ = pieces; }
+  /// Where first() came to the last of the pieces, without knowing of roots beyond.
+  const std::optional<T>& exhausted() const { return exhausted_; }
   /// Whether a function stays clear of zero within the window.
   bool is_clear(std::size_t index) const { return clear_[index] != 0; }
   std::int8_t side_of_clear(std::size_t index) const { return clear_[index]; }
@@ -163,6 +168,7 @@ class RootSearchOf {
     t_ = time;
     h_ = h;
     origin_ = T(0);
+    used_.assign(slots_.size(), 0);
     const T& t = time.hi;
     // Below it two times are the same, or nearly so.
     using std::abs;
@@ -240,7 +246,9 @@ class RootSearchOf {
   bool expanded_ = false;  // the rows are those of the place
   Time t_;
   T h_ = T(1), resolution_ = T(0), window_ = T(1);
-  std::optional<T> lost_;
+  std::optional<T> lost_, exhausted_;
+  std::size_t allowed_ = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> used_;                                 // [slots] pieces of this step
   T origin_ = T(0);                                               // where the search begins
   double last_radius_ = std::numeric_limits<double>::infinity();  // of the disk of the piece before, in time
   double last_window_ = 0;                                        // in time; 0: there was none

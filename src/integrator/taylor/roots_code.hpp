@@ -318,7 +318,7 @@ bool stays_clear(const ScaledPolynomialOf<T>& polynomial, std::int8_t side) {
 template <class T>
 std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watched, const T& from, const T& until,
                                                 bool wants_touching, bool wants_jumps) {
-  lost_.reset();
+  lost_.reset(), exhausted_.reset();
   if (is_clear(index)) {
     const bool wrong = watched.side == -clear_[index] && wants_jumps;
     watched = {clear_[index], false};
@@ -331,6 +331,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(std::size_t index, Watched& watc
   int turns = 0;                 // nearer to one place
   // Over what rounding does not tell from the end no further piece tells anything; the step to come does.
   while (x < until && (x == origin_ || until - x > resolution_)) {
+    if (++used_[index] > allowed_) return exhausted_ = x, std::nullopt;
     Piece now = x == origin_ && turns == 0 ? up_to(piece(index, x, T(window_ - x)), T(until - x))
                                            : piece(index, x, std::min(most, T(until - x)));
     if (now.width == 0) {

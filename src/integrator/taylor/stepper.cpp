@@ -261,6 +261,22 @@ Step TaylorStepper::Impl::step(double bound) {
   }
 }
 
+/// The first crossing of a step of length h, which becomes shorter where a watched function swings too often in it to
+/// be followed to its end, or so often that rounding of its places hides the swings.
+taylor::Crossing TaylorStepper::Impl::crossing_within(double& h) {
+  constexpr double longer = 1.1, sure = 0.9, shorter = 1.0 / 16, moment = 1e4 * std::numeric_limits<double>::epsilon();
+  const double shortest = moment * std::max(std::abs(state.t.hi), std::abs(h));
+  const bool was_shortened = followed > 0;
+  if (was_shortened) h = std::copysign(std::min(std::abs(h), longer * followed), h);
+  for (;;) {
+    taylor::Crossing out = watched.first_crossing(work, state.t, h);
+    const bool is_crowded = out.followed < out.x, is_hidden = out.is_lost && out.x == 0 && std::abs(h) > shortest;
+    if (is_crowded || is_hidden) h *= is_crowded ? sure * out.followed : shorter;
+    if (is_crowded || is_hidden || was_shortened) followed = std::abs(h);
+    if (!is_crowded && !is_hidden) return out;
+  }
+}
+
 /// False: the equations do not hold at its end.
 bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   balanced = taylor::balanced(work, n, m, std::abs(h), std::abs(state.t.hi - last.begin.hi), constraints.usual);
@@ -269,7 +285,7 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   watched.set_sides(probe);
   last.record_start(work, steps % options.observed_steps == 0);
   has_start_sample = true;
-  const taylor::Crossing crossing = watched.empty() ? taylor::Crossing() : watched.first_crossing(work, state.t, h);
+  const taylor::Crossing crossing = watched.empty() ? taylor::Crossing() : crossing_within(h);
   if (crossing.found && stuck >= 100) {
     end(result, StepEnding::Sliding,
         "Switches follow each other in no time: the motion has come to slide along a switch.");
@@ -318,7 +334,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.shrinking.start(t);
   s.safe.forget();
   s.end_check.forget();
-  s.length = s.longest = s.tried = 0;
+  s.length = s.longest = s.tried = s.followed = 0;
   s.first = true;
   s.expanded = s.noisy = false;
   s.stuck = 0;

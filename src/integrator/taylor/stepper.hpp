@@ -48,6 +48,7 @@ struct TaylorStepper::Impl {
   bool is_at_rest() const;
   bool rests_for_ever() const;
   bool stays(double h) const;
+  taylor::Crossing crossing_within(double& h);
   bool make_step(double bound, double h, Step& result);
   void advance(double bound, double h, const taylor::Crossing& crossing, Step& result);
   double moved(double tau, double h, bool meets_events_alone) const;
@@ -99,6 +100,7 @@ struct TaylorStepper::Impl {
   double length = 0;                    // the last one that the control chose
   double longest = 0;                   // so far
   double tried = 0;                     // the last one at which no place was passed
+  double followed = 0;                  // the last one in which a watched function swings as often as it may; 0: none
 
   // How the run goes.
   bool has_start_sample = false;  // before the first step it is made when it is asked for

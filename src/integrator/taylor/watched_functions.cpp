@@ -51,7 +51,9 @@ WatchedFunctions::WatchedFunctions(const Kernel& kernel, const KernelWorkspace& 
   const std::vector<std::int8_t>& lags = work.program().lags;
   follow_places_ = std::all_of(work.program().switch_slots.begin(), work.program().switch_slots.end(),
                                [&](Slot slot) { return lags[slot] <= 0; });
+  constexpr std::size_t most_pieces = 10'000;  // a tenth of a second
   roots_.emplace(work.program(), work.order(), slots);
+  roots_->allow(most_pieces);
   std::vector<bool> is_rough = is_unread_;  // the step goes on there
   is_rough.resize(slots.size(), false);
   roots_->leave_rough(std::move(is_rough));
@@ -103,6 +105,14 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   return out;
 }
 
+std::optional<RootOf<double>> WatchedFunctions::first_root(std::size_t index, Watched& watched, double from,
+                                                           double until, bool wants_touching, bool wants_jumps,
+                                                           Crossing& out) {
+  const auto root = roots_->first(index, watched, from, until, wants_touching, wants_jumps);
+  if (roots_->exhausted()) out.followed = std::min(out.followed, *roots_->exhausted());
+  return root;
+}
+
 /// The first root in (from, limit] at which this event ends the step. Roots before it that do not end the step are told
 /// by `pass`, when it is known where the step ends.
 void WatchedFunctions::note_first(const KernelWorkspace& work, std::size_t event, double h, double from, double limit,
@@ -124,7 +134,7 @@ void WatchedFunctions::note_first(const KernelWorkspace& work, std::size_t event
     const double beyond = std::max(together_, unresolved);
     const double until = std::min({roots_->window(), limit, out.x * (1 + together_) + beyond});
     if (!(from < until)) return;
-    const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
+    const auto root = first_root(i, watched, from, until, tells_touches(event), false, out);
     if (!root) {
       if (roots_->lost() && *roots_->lost() < out.x) out.end_where_lost(*roots_->lost());
       return;
@@ -141,7 +151,7 @@ void WatchedFunctions::search_part(const KernelWorkspace& work, double h, double
     Watched& watched = out.after[i];
     if (watched.side == 0 && !std::isnan(work.switch_function(i, 0))) continue;  // it vanishes
     const double until = std::min({roots_->window(), limit, out.x * (1 + together_) + together_});
-    if (const auto root = roots_->first(i, watched, from, until, false, true)) {
+    if (const auto root = first_root(i, watched, from, until, false, true, out)) {
       out.note(*root, i, together_, root->kind == RootKind::Touching ? 0 : -watched.side);
       if (root->kind == RootKind::Jump) watched = {root->after, false};
     } else if (roots_->lost() && *roots_->lost() < out.x) {
@@ -239,7 +249,7 @@ void WatchedFunctions::pass(const KernelWorkspace& work, double h, double begin,
       if (way && (*way != 0 || tells_touches(event))) note_root(0, *way, hidden, watched.order);
     }
     for (double from = begin; from < until;) {
-      const auto root = roots_->first(i, watched, from, until, tells_touches(event), false);
+      const auto root = first_root(i, watched, from, until, tells_touches(event), false, out);
       if (roots_->lost()) return out.end_where_lost(0);
       if (!root) break;
       if (leaves_open && is_at_end(root->x, root->hidden)) {

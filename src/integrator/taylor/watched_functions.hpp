@@ -23,6 +23,7 @@ struct PassedRoot {
 struct Crossing : MetRoots<double> {
   std::vector<PassedRoot> passed;   // in time order
   std::vector<std::size_t> turned;  // switches before it that only what is watched depends on
+  double followed = 1;  // of the step: so far a function was followed that swings in it more often than can be told
 };
 
 /// The switch functions and events of a motion: on which sides they are, and where along a step they first leave them.
@@ -64,6 +65,8 @@ class WatchedFunctions {
 
  private:
   void copy_sides(KernelWorkspace& work) const;
+  std::optional<RootOf<double>> first_root(std::size_t index, Watched& watched, double from, double until,
+                                           bool wants_touching, bool wants_jumps, Crossing& out);
   void search_part(const KernelWorkspace& work, double h, double from, double limit, Crossing& out);
   void search(const KernelWorkspace& work, double h, double from, Crossing& out);
   void note_first(const KernelWorkspace& work, std::size_t event, double h, double from, double limit, Crossing& out);
