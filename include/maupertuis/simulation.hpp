@@ -66,9 +66,10 @@ enum class Ending {
   StepUnderflow,
   Sliding,
   TooManySteps,
-  Stopped,   // by an event of the model that stops the run
-  Paradox,   // no mode, or none that is known, fits contacts and friction here
-  Unending,  // events follow each other without end and without getting denser
+  Stopped,          // by an event of the model that stops the run
+  Paradox,          // no mode, or none that is known, fits contacts and friction here
+  Unending,         // events follow each other without end, or more of them than are followed
+  ImpossibleState,  // an event sets a state that constraints or contacts do not allow, or one without a value
 };
 /// "until reached", "singular mass matrix", … for JSON.
 std::string_view word_of(Ending ending);

@@ -17,10 +17,11 @@ enum class StepEnding {
   Sliding,              // both sides of a switch push back to it
   TooManySteps,
   Interrupted,
-  NoConvergence,  // the equations of an implicit step were not solved, or no step meets the tolerance
-  Paradox,        // no mode of contacts and friction fits here
-  Unending,       // events without end
-  Refused,        // no step was made: the start or the parameters are none that the model takes
+  NoConvergence,    // the equations of an implicit step were not solved, or no step meets the tolerance
+  Paradox,          // no mode of contacts and friction fits here
+  Unending,         // events without end
+  ImpossibleState,  // an event sets a state that constraints or contacts do not allow
+  Refused,          // no step was made: the start or the parameters are none that the model takes
 };
 
 /// A root of an event function: 1 rising, −1 falling, 0 where it comes to zero and goes back.

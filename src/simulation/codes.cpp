@@ -236,6 +236,44 @@ constexpr std::array entries{
               "body rod mass m inertia m l^2/12 at (x, z) rotation angle θ\ngravity (0, -g)\n"
               "contact z - l/2 sin θ >= 0 friction 0.3 slip x' + l/2 sin θ θ' name floor\n"
               "start z = l/2 sin(1), θ = 1 rad, x' = -3 m/s\nrun 0.1 s\n"},
+    CodeEntry{
+        "W0737", "an event sets a state that is not possible",
+        "`set` puts the motion into another state, from which it goes on. That state has to keep every constraint, "
+        "with its velocities too, has to lie inside no contact, and needs a value for each coordinate. Nothing is "
+        "moved to make it so: set all coordinates that a constraint ties together. The run keeps what came before.",
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\npoint P mass m at (x, y)\n"
+        "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\nevent low when x = 0 : set x = 0.1 m\n"
+        "start x = 0.6 m, y = -0.8 m\nrun 5 s\n",
+        "# maup simulate\ncoord x, y : length\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\npoint P mass m at (x, y)\n"
+        "gravity (0, -g)\nconstraint x^2 + y^2 = l^2 name rod\nevent low when x = 0 : set x' = x'/2, y' = y'/2\n"
+        "start x = 0.6 m, y = -0.8 m\nrun 5 s\n"},
+    CodeEntry{
+        "W0738", "events without end",
+        "Events, impacts and changes of contact may follow each other faster and faster up to an instant that no "
+        "number of them passes; a `set` does not say what comes after it, as a contact with `restitution` does. Or "
+        "they come so fast that a run would meet more of them than are followed: that is foreseen from their rate, "
+        "or counted. The message names the bound. The run keeps what came before.",
+        "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m z'^2\nV = m g z\n"
+        "event floor when z = 0 falling : set z' = -0.5 z'\nstart z = 1 m\nrun 5 s\n",
+        "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m z'^2\nV = m g z\n"
+        "contact z >= 0 restitution 0.5 name floor\nstart z = 1 m\nrun 5 s\n"},
+    CodeEntry{
+        "W0739", "no motion of contacts and friction goes on",
+        "With rigid contacts and dry friction there may be no motion with finite forces, or several. In Painlevé's "
+        "paradox friction turns the response of a contact to its own force around: more force makes it close faster. "
+        "A stiff spring in place of that contact, or less friction, has a motion. Contacts that are hit at once may "
+        "have no impulses that keep all of them from closing: `impact sequential` lets them follow each other. Static friction below "
+        "kinetic friction neither holds nor slides. Bounces may become too small to be told apart: `restitution 0` "
+        "ends them. And backwards in time nothing follows from an impact or a stop: begin behind it. The run keeps "
+        "what came before.",
+        "# maup simulate\ncoord x, z : length, θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+        "body rod mass m inertia m l^2/12 at (x, z) rotation angle θ\ngravity (0, -g)\n"
+        "contact z - l/2 sin θ >= 0 friction 3 slip x' + l/2 sin θ θ' name floor\n"
+        "start z = l/2 sin(1), θ = 1 rad, x' = -3 m/s\nrun 0.1 s\n",
+        "# maup simulate\ncoord x, z : length, θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+        "body rod mass m inertia m l^2/12 at (x, z) rotation angle θ\ngravity (0, -g)\n"
+        "contact z - l/2 sin θ >= 0 friction 0.3 slip x' + l/2 sin θ θ' name floor\n"
+        "start z = l/2 sin(1), θ = 1 rad, x' = -3 m/s\nrun 0.1 s\n"},
     CodeEntry{"E0728", "the start violates a contact",
               "A contact g >= 0 holds at all times, at the first one too: bodies do not begin inside each other.",
               "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2, e = 0.8\nT = 1/2 m z'^2\n"

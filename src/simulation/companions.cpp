@@ -1,4 +1,5 @@
 #include "simulation/companions.hpp"
+#include "simulation/ending.hpp"
 
 #include "simulation/hybrid_motion.hpp"
 #include "simulation/lost_digits.hpp"
@@ -105,17 +106,36 @@ class Recorder {
       // As much earlier as rounding hides: what it may hide from all of them is in the errors then.
       const bool met = until && step.event && !out_.final;
       if (met) out_.final = closely(method_.time() - std::copysign(step.hidden, bound - plan_.run.begin));
+      note_like_ending(step);  // a little earlier
       if (step.ending != StepEnding::None) break;
       if (out_.final && has_come_to(plan_.result.final.t)) break;
       // It has met its end a little earlier, before the last row of the motion.
       if (met) bound = plan_.result.final.t;
     }
-    if (!until && method_.time() == bound && !has_lost_the_motion()) out_.final = closely(plan_.looked_at(bound));
+    if (!until && method_.time() == bound && !has_lost_the_motion()) {
+      out_.final = closely(plan_.looked_at(bound));
+      come_to_like_ending();
+    }
     out_.rows.resize(plan_.grid.size() * plan_.columns(), nothing);
     return std::move(out_);
   }
 
  private:
+  /// Where the run cannot go on for what events, contacts or friction do, its companion cannot either.
+  void note_like_ending(const Step& step) {
+    if (is_reason_of_modes(plan_.result.ending) && ending_of(step.ending) == plan_.result.ending)
+      out_.final = closely(method_.time());
+  }
+
+  /// That comes a little later here. Those that have been counted alone have no instant of their own.
+  void come_to_like_ending() {
+    constexpr double little = 1e-6;  // of the run
+    if (plan_.result.ending != Ending::Paradox && plan_.result.ending != Ending::ImpossibleState) return;
+    const double bound = plan_.result.final.t + little * (plan_.result.final.t - plan_.run.begin);
+    for (Step step; step.ending == StepEnding::None && method_.time() != bound; note_like_ending(step))
+      step = method_.step(bound);
+  }
+
   Sample sample(double t) const {
     Sample out = method_.sample(t);
     leave_out_undetermined(out, plan_.observables);

@@ -25,6 +25,8 @@ Ending ending_of(StepEnding ending) {
       return Ending::Paradox;
     case StepEnding::Unending:
       return Ending::Unending;
+    case StepEnding::ImpossibleState:
+      return Ending::ImpossibleState;
     case StepEnding::None:
       break;
   }
@@ -67,8 +69,29 @@ std::string_view word_of(Ending ending) {
       return "no motion fits";
     case Ending::Unending:
       return "events without end";
+    case Ending::ImpossibleState:
+      return "impossible state";
   }
   return "";
+}
+
+bool is_reason_of_modes(Ending ending) {
+  return ending == Ending::ImpossibleState || ending == Ending::Unending || ending == Ending::Paradox;
+}
+
+void tell_ending(Ending ending, const std::string& reason, std::optional<Span> place, Diagnostics& diagnostics) {
+  if (ending == Ending::ImpossibleState)
+    diagnostics.warning("W0737", place, "the run ended: an event sets a state that is not possible", reason,
+                        "`set` has to give all that the state needs: coordinates and velocities on the constraints, "
+                        "inside all contacts, each a finite number.");
+  else if (ending == Ending::Unending)
+    diagnostics.warning("W0738", place, "the run ended: events without end, or more of them than are followed", reason,
+                        "Write an event that comes less often, end the run before, or stop it with an event.");
+  else if (ending == Ending::Paradox)
+    diagnostics.warning(
+        "W0739", place, "the run ended: no motion of contacts and friction goes on here", reason,
+        "`maup explain W0739` says of each such end what helps: another coefficient of friction, a stiff "
+        "spring in place of a rigid contact, `impact sequential`.");
 }
 
 bool goes_through_modes(const Model& model) { return model.system.has_modes() || !model.experiment.events.empty(); }

@@ -1,4 +1,5 @@
 #include "simulation/errors.hpp"
+#include "simulation/ending.hpp"
 
 #include "simulation/lost_digits.hpp"
 #include "simulation/matched_times.hpp"
@@ -43,7 +44,8 @@ class Teller {
                    [i](const CompanionRun& run) { return sample_or_null(run.at[i]); });
     tell_state(result_.final, plan_.roundings.final,
                [](const CompanionRun& run) { return run.final ? &*run.final : nullptr; });
-    if (result_.ending == Ending::UntilReached || result_.ending == Ending::Stopped)
+    if (result_.ending == Ending::UntilReached || result_.ending == Ending::Stopped ||
+        is_reason_of_modes(result_.ending))
       result_.final.errors->t =
           error_of(result_.final.t, [](const CompanionRun& run) { return run.final ? run.final->t : infinity; });
     if (plan_.whole_rows) tell_rows();

@@ -108,6 +108,9 @@ class ExtendedRun {
     return std::move(out_);
   }
 
+  /// The contact at which the motion cannot go on, if it is one.
+  std::optional<Span> ended_by() const { return ended_by_; }
+
  private:
   /// States that were asked for and reached: how many of their digits are right is not known.
   void keep_without_digits(const ExtendedMotion& rough) {
@@ -192,6 +195,7 @@ class ExtendedRun {
   void tell_ending(const ExtendedMotion& motion) {
     out_.ending = ending_of(motion.ending);
     out_.reason = reason_of(motion);
+    if (motion.trouble) ended_by_ = system_.contacts[*motion.trouble].span;
     out_.reached = end_of(motion);
     if (motion.ending != StepEnding::None) return;
     const auto stop =
@@ -430,6 +434,7 @@ class ExtendedRun {
   Level level_;
   ExtendedOptions settings_;
   ExtendedResult out_;
+  std::optional<Span> ended_by_;
 };
 
 SimulationOptions in_double(const ExtendedSimulationOptions& options) {
@@ -454,9 +459,10 @@ std::optional<ExtendedResult> simulate_extended(const Model& model, const Equati
   const auto plan = plan_run(model, equations, rough, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, rough, diagnostics)) return std::nullopt;
   const Observables observables = collect_observables(equations, nullptr);
-  return ExtendedRun(model, equations, options, plan_extended(model, equations, options, *plan, observables),
-                     observables)
-      .carry_out();
+  ExtendedRun run(model, equations, options, plan_extended(model, equations, options, *plan, observables), observables);
+  ExtendedResult result = run.carry_out();
+  if (goes_through_modes(model)) tell_ending(result.ending, result.reason, run.ended_by(), diagnostics);
+  return result;
 }
 
 namespace {

@@ -61,7 +61,10 @@ void ModeChange::start() {
 
 std::optional<Trouble> ModeChange::settle(Met& met, double bound, bool forwards) {
   if (!met.sets.empty())
-    if (auto why = trouble_of_sets(met)) return Trouble{StepEnding::SingularConstraints, std::move(*why)};
+    if (auto why = trouble_of_sets(met)) {
+      journal_.end_by(met.sets.front()->span);
+      return Trouble{StepEnding::ImpossibleState, std::move(*why)};
+    }
   const ContactValues& values = here_.values();
   if (met.begins) {
     sizes_.note_gaps_elsewhere(values);
@@ -79,6 +82,7 @@ std::optional<Trouble> ModeChange::settle(Met& met, double bound, bool forwards)
     why = trouble_of_mode(met, touching, bound);
   }
   if (!why) return std::nullopt;
+  if (!touching.empty()) journal_.end_by(problem_.system.contacts[touching.front()].span);
   return Trouble{StepEnding::Paradox, std::move(*why)};
 }
 

@@ -282,7 +282,9 @@ void Events::note_sets(const Met& met, double bound, bool forwards) {
   if (met.sets.empty()) return;
   for (const ModelEvent* event : met.sets) sets_that_follow_.add(number_of(event), here_.t);
   const auto end = sets_that_follow_.end();  // none where they have become too short: the last one stands
-  if (end && (forwards ? end->t <= bound : end->t >= bound)) sets_end_ = end;
+  if (!end || (forwards ? end->t > bound : end->t < bound)) return;
+  sets_end_ = end;
+  journal_.end_by(problem_.model.experiment.events[end->kinds.front()].span);
 }
 
 std::string Events::too_short_to_tell(const ModelEvent& event) const {

@@ -10,8 +10,8 @@
 namespace maupertuis::hybrid {
 namespace {
 
-constexpr std::size_t most_happenings = 10'000'000;
-constexpr std::size_t many_happenings = 10'000;  // after which their rate is looked at again
+constexpr std::size_t most_happenings = 1'000'000;
+constexpr std::size_t first_look = 4'000;        // at their rate
 constexpr std::size_t most_numbers = 2'000'000;  // of states that are kept with what happens
 
 }  // namespace
@@ -19,7 +19,7 @@ constexpr std::size_t most_numbers = 2'000'000;  // of states that are kept with
 void Journal::start() {
   record_ = {};
   left_out_remarks_ = 0;
-  counted_at_.clear();
+  next_look_ = first_look;
   idle_.assign(problem_.system.contacts.size(), false);
 }
 
@@ -127,10 +127,11 @@ void Journal::change_mode(const ContactMode& before, const ContactMode& after, s
   for (std::size_t i = 0; i < after.friction.size(); ++i) {
     const FrictionState now = after.friction[i];
     if (now == before.friction[i] || now == FrictionState::None) continue;
+    const bool closes = i < after.closed.size() && after.closed[i] && !before.closed[i];
+    if (closes && now != FrictionState::Stick) continue;  // it was not held: that it slides is told where it closes
     Happening& told =
         add(now == FrictionState::Stick ? Happening::Kind::Stick : Happening::Kind::Slip, problem_.label_of(i));
-    const bool is_made_then = i < after.closed.size() && after.closed[i] && !before.closed[i];
-    if (end && is_made_then) told.t = end->t;
+    if (end && closes) told.t = end->t;
   }
   tell_mode(mode_text(problem_.system, after), first);
   idle_ = idle;
@@ -164,24 +165,46 @@ void Journal::tell_mode(const std::string& mode, std::size_t first) {
   }
 }
 
+/// Whether something may end the run before its time.
+bool Journal::may_stop() const {
+  const Experiment& experiment = problem_.model.experiment;
+  return experiment.until || std::any_of(experiment.events.begin(), experiment.events.end(),
+                                         [](const ModelEvent& e) { return e.action == ModelEvent::Action::Stop; });
+}
+
+/// The last three quarters of what happened, in three parts of as many each. Parts of one length go on so. Where events
+/// of the model alone become ever denser they go on no slower, by what is known, which ten times as many have to show;
+/// impacts that become denser come to an end.
+std::optional<Journal::Rate> Journal::rate_so_far(double bound, double t) const {
+  constexpr double steady = 1.05, sure = 10;
+  const std::size_t last = size() - 1, part = size() / 4;
+  const auto time = [&](std::size_t parts) { return record_.happenings[last - parts * part].t; };
+  const double length[] = {std::abs(time(0) - time(1)), std::abs(time(1) - time(2)), std::abs(time(2) - time(3))};
+  const auto [shortest, longest] = std::minmax({length[0], length[1], length[2]});
+  const double left = static_cast<double>(part) * std::abs(bound - t);
+  if (longest < steady * shortest) return Rate{part, length[0], left / longest};
+  const auto begin = record_.happenings.end() - static_cast<std::ptrdiff_t>(3 * part);
+  const bool are_events =
+      std::all_of(begin, record_.happenings.end(), [](const Happening& h) { return h.kind == Happening::Kind::Event; });
+  if (!are_events || !(length[0] < length[1] && length[1] < length[2])) return std::nullopt;
+  return Rate{part, length[0], left / length[0] / sure};
+}
+
 std::optional<std::string> Journal::too_many(double t, double bound) {
-  constexpr double steady = 1.05;
-  const std::size_t count = record_.happenings.size();
-  if (count > most_happenings) return fmt::format("More than {} events and changes of contact.", most_happenings);
-  if (count < many_happenings * (counted_at_.size() + 1)) return std::nullopt;
-  counted_at_.push_back(t);
-  if (counted_at_.size() < 4) return std::nullopt;
-  const auto last = [&](std::size_t k) {
-    const std::size_t i = counted_at_.size() - k;
-    return std::abs(counted_at_[i] - counted_at_[i - 1]);
-  };
-  const auto [shortest, longest] = std::minmax({last(1), last(2), last(3)});
-  const double to_come = static_cast<double>(many_happenings) * std::abs(bound - t) / longest;
-  if (!(longest < steady * shortest) || !(to_come > static_cast<double>(most_happenings))) return std::nullopt;
+  constexpr double looks_again = 1.1, well_known = 25e3;  // of so many happenings the rate is that of the run
+  const std::size_t count = size();
+  if (count > most_happenings)
+    return fmt::format("More than {} events and changes of contact: no more are followed.", most_happenings);
+  if (count < next_look_) return std::nullopt;
+  next_look_ = static_cast<std::size_t>(looks_again * static_cast<double>(count));
+  if (may_stop()) return std::nullopt;
+  const auto rate = rate_so_far(bound, t);
+  const double margin = std::max(1.0, well_known / static_cast<double>(count));
+  if (!rate || !(rate->to_come > margin * static_cast<double>(most_happenings))) return std::nullopt;
   return fmt::format(
-      "{} events and changes of contact follow each other in {:.3g} units of time, and as fast "
-      "before: {:.2g} of them would come up to the end of the run, and {} are followed at most.",
-      many_happenings, longest, to_come, most_happenings);
+      "The last {} of {} events and changes of contact followed each other in {:.3g} units of time, and no faster "
+      "before: {:.2g} of them or more would come up to the end of the run, and {} are followed at most.",
+      rate->count, count, rate->length, rate->to_come, most_happenings);
 }
 
 }  // namespace maupertuis::hybrid

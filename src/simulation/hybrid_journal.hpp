@@ -27,6 +27,7 @@ struct HybridRecord {
   EnergyBooks books;                      // friction and dampers: at the end of the run
   std::vector<std::string> remarks;       // a sentence each, each once
   std::optional<std::string> stopped_by;  // the event that stopped the run
+  std::optional<Span> ended_by;           // the statement for which the motion cannot go on
 };
 
 }  // namespace maupertuis
@@ -57,6 +58,7 @@ class Journal {
   /// A sentence, told once; of many the first ones.
   void remark(const std::string& sentence);
   void stop_by(const std::string& event);
+  void end_by(std::optional<Span> statement) { record_.ended_by = statement; }
   /// The first mode of the run.
   void begin_in(const ContactMode& before, const ContactMode& mode, std::span<const double> accelerations);
   /// What contacts and frictions do as one mode follows another. `end`: of the bounces that close contacts here.
@@ -70,11 +72,19 @@ class Journal {
   void tell_limits(const ContactValues& values);
   /// Forgets what would be after the end of the run: an end of bounces that is told may lie beyond it.
   void end_at(double t, bool forwards);
-  /// Events and changes that come at a steady rate, which meets more of them up to the end of the run than are
-  /// followed, end it when that is seen: the reason. A rate that grows may come to its end: those are counted.
+  /// More events and changes than are followed end the run: the reason. So do those whose rate, steady or that of
+  /// events which grows, shows that there would be more up to its end, if nothing may stop it before: the fewer there
+  /// were, the more have to be foreseen. Impacts whose rate grows may come to their end: those are counted.
   std::optional<std::string> too_many(double t, double bound);
 
  private:
+  struct Rate {
+    std::size_t count = 0;
+    double length = 0;   // in which the last `count` of them followed each other
+    double to_come = 0;  // up to the end of the run
+  };
+  bool may_stop() const;
+  std::optional<Rate> rate_so_far(double bound, double t) const;
   std::vector<bool> idle_in(const ContactMode& before, const ContactMode& mode,
                             std::span<const double> accelerations) const;
   IndependentRows rows_that_carry(const ContactMode& mode, const ContactValues& values) const;
@@ -87,8 +97,8 @@ class Journal {
   const UsualSizes& sizes_;
   HybridRecord record_;
   std::size_t left_out_remarks_ = 0;
-  std::vector<double> counted_at_;  // times of every ten thousandth happening
-  std::vector<bool> idle_;          // [contacts] open in the mode, but others keep them closed
+  std::size_t next_look_ = 0;  // so many happenings until their rate is looked at again
+  std::vector<bool> idle_;     // [contacts] open in the mode, but others keep them closed
 };
 
 }  // namespace maupertuis::hybrid

@@ -24,10 +24,11 @@ bool equal_to_rounding(const std::vector<double>& a, const std::vector<double>& 
 }
 
 std::string two_fit(const std::string& one, const std::string& other) {
+  const auto name = [](const std::string& mode) { return mode.empty() ? "free" : mode; };
   return fmt::format(
       "Painlevé's paradox: friction turns the contact force around here, and more than one motion fits: in the mode "
       "`{}` and in the mode `{}`. {}",
-      one, other, beyond_painleve);
+      name(one), name(other), beyond_painleve);
 }
 
 /// In which order modes are tried, and how many of them. Of many contacts the one that the forces of all point to is
@@ -269,14 +270,8 @@ bool ModeChoice::gives_way_unforced(const std::vector<Choice>& list, const Found
 /// Where more normal force makes a contact close faster (Painlevé), more than one mode may fit.
 bool ModeChoice::may_be_several(const ContactMode& mode, const ContactValues& values) const {
   for (std::size_t i = 0; i < mode.closed.size(); ++i) {
-    if (!mode.closed[i] || mode.friction[i] == FrictionState::None || mode.friction[i] == FrictionState::Stick)
-      continue;
-    const double sign = mode.friction[i] == FrictionState::Backward ? -1 : 1;
-    const SparseRow summed = mode.friction[i] == FrictionState::Slide
-                                 ? slips_.sliding_force(i, values)
-                                 : sum_of(values.normal[i], values.tangent[i], -sign * values.kinetic[i]);
-    const Eigen::MatrixXd response = here_.response({&summed, 1});
-    if (!(dot(values.normal[i], response.col(0)) > 0)) return true;
+    const auto response = slips_.own_response(i, mode, values);
+    if (response && !(response->with_friction > 0)) return true;
   }
   return false;
 }

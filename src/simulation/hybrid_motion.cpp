@@ -164,6 +164,8 @@ Step HybridMotion::step_in_mode(double bound) {
   if (out.end != out.begin) same_time_ = 0;
   longest_step_ = std::max(longest_step_, length);
   motions_.passed_moment().end_step();
+  if (out.ending == StepEnding::SingularConstraints)
+    if (auto paradox = came_to_paradox()) return std::move(*paradox);
   if (out.ending != StepEnding::None) return out;
   events_.look_for_values(out.begin);
   note_step();
@@ -172,10 +174,28 @@ Step HybridMotion::step_in_mode(double bound) {
   return out;
 }
 
-Step HybridMotion::went_through(std::size_t contact) const {
+/// Where friction is about to turn the response of a contact to its own force around, that force grows without bound.
+std::optional<Step> HybridMotion::came_to_paradox() {
+  constexpr double nearly_none = 1e-3;  // of the response without friction
+  take_state();
+  const ContactValues& values = here_.values();
+  for (std::size_t i = 0; i < problem_.system.contacts.size(); ++i) {
+    const auto response = slips_.own_response(i, motions_.now().mode, values);
+    if (!response || !(response->with_friction <= nearly_none * response->without)) continue;
+    journal_.end_by(problem_.system.contacts[i].span);
+    return ended(StepEnding::Paradox,
+                 fmt::format("Painlevé's paradox: with the friction of its slip the contact {} yields no more to its "
+                             "own force here, which grows without bound. {}",
+                             problem_.system.contact_label(i), beyond_painleve));
+  }
+  return std::nullopt;
+}
+
+Step HybridMotion::went_through(std::size_t contact) {
   const std::string label = problem_.system.contact_label(contact);
   if (!std::isfinite(here_.values().gap[contact]))
     return ended(StepEnding::Overflow, fmt::format("The gap of the contact {} has no value here.", label));
+  journal_.end_by(problem_.system.contacts[contact].span);
   return ended(StepEnding::Paradox,
                fmt::format("The motion went through the contact {} without a sign of it{}.", label,
                            change_.has_bounced(contact) ? ": bounces have become too small to be told apart" : ""));

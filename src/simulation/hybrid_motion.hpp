@@ -86,7 +86,8 @@ class HybridMotion final : public Method {
 
   Step ended(StepEnding ending, std::string reason) const;
   Step stopped(StepEnding ending, std::string reason);
-  Step went_through(std::size_t contact) const;
+  Step went_through(std::size_t contact);
+  std::optional<Step> came_to_paradox();
 
   hybrid::Problem problem_;
   hybrid::State here_;

@@ -94,6 +94,19 @@ SparseRow SpaceSlips::sliding_force(std::size_t i, const ContactValues& values) 
   return sum_of(out, values.second_tangent[i], -mu * across);
 }
 
+std::optional<SpaceSlips::OwnResponse> SpaceSlips::own_response(std::size_t i, const ContactMode& mode,
+                                                                const ContactValues& values) const {
+  const FrictionState state = mode.friction[i];
+  if (!mode.closed[i] || state == FrictionState::None || state == FrictionState::Stick) return std::nullopt;
+  const double sign = state == FrictionState::Backward ? -1 : 1;
+  const SparseRow forces[] = {state == FrictionState::Slide
+                                  ? sliding_force(i, values)
+                                  : sum_of(values.normal[i], values.tangent[i], -sign * values.kinetic[i]),
+                              values.normal[i]};
+  const Eigen::MatrixXd response = here_.response(forces);
+  return OwnResponse{dot(values.normal[i], response.col(0)), dot(values.normal[i], response.col(1))};
+}
+
 std::vector<double> SpaceSlips::stop_speeds() const {
   std::vector<double> out;
   for (std::size_t i = 0; i < problem_.system.contacts.size(); ++i) out.push_back(stop_speed(i));

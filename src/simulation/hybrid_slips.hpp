@@ -57,6 +57,13 @@ class SpaceSlips {
   /// ∂g/∂q − μ Σ_k d_k ∂v_tk/∂q̇: what a unit of the normal force does while it slides along d = v_t/|v_t|, or begins
   /// to slide along d.
   SparseRow sliding_force(std::size_t contact, const ContactValues& values) const;
+  /// What a unit of the normal force of a contact that slides in this mode does to its own g̈, with its friction, and
+  /// without. In Painlevé's paradox the first is not above 0. Nothing where it does not slide.
+  struct OwnResponse {
+    double with_friction, without;
+  };
+  std::optional<OwnResponse> own_response(std::size_t contact, const ContactMode& mode,
+                                          const ContactValues& values) const;
   /// What a motion in this mode is given: the directions of slips that begin. Nothing where it has none.
   std::optional<Given> directions_in(const ContactMode& mode, double bound) const;
 

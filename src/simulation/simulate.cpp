@@ -483,6 +483,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   if (equations.degenerate) forget_drift_of_nothing(result, equations);
   warn_of_drift(result, equations, options, diagnostics);
   if (hybrid) warn_of_values(hybrid->record(), model, diagnostics);
+  if (hybrid) tell_ending(result.ending, result.reason, hybrid->record().ended_by, diagnostics);
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
       options.backend == Backend::Compiled)

@@ -282,6 +282,12 @@ void add_contacts(Json& document, const EquationsOfMotion& equations, const std:
   document["first_mode"] = start && start->trouble.empty() ? Json(mode_name(start->mode)) : Json();
 }
 
+/// A start without a motion is told above (W0731).
+std::string closing_of(const std::optional<ContactStart>& start) {
+  return start && !start->trouble.empty() ? "No motion begins at this start; no other mistakes were found.\n"
+                                          : "No mistakes found.\n";
+}
+
 ExitCode check(const ModelOptions& options, Console& console) {
   Study study = open_study(options);
   if (study.has_fields()) {
@@ -315,7 +321,8 @@ ExitCode check(const ModelOptions& options, Console& console) {
     if (counted && model->system.has_modes()) add_contacts(document, *equations, findings->contacts);
     return finish(console, study, document);
   }
-  if (findings && !study.wrong()) console.print(Summary(*model, *equations, *findings).text() + "No mistakes found.\n");
+  if (findings && !study.wrong())
+    console.print(Summary(*model, *equations, *findings).text() + closing_of(findings->contacts));
   return finish(console, study, {});
 }
 

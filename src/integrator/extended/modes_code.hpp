@@ -263,7 +263,7 @@ bool Modes<T>::carry_out_sets(const Met& met) {
   }
   const auto is_finite = [](const T& x) { return isfinite(x); };
   if (!std::all_of(q.begin(), q.end(), is_finite) || !std::all_of(v.begin(), v.end(), is_finite))
-    return stop(StepEnding::Overflow, std::nullopt,
+    return stop(StepEnding::ImpossibleState, std::nullopt,
                 "An event sets a state without a value: a formula of it has none here.");
   q_ = std::move(q), v_ = std::move(v);
   if (!evaluate()) return stop(StepEnding::Overflow, std::nullopt, "The state that an event sets has no forces.");
@@ -273,10 +273,10 @@ bool Modes<T>::carry_out_sets(const Met& met) {
     if ((base_.program().constraint_values[k] != no_slot &&
          breaks(base_.constraint_value(k), base_.constraint_scale(k))) ||
         breaks(base_.constraint_rate(k), base_.constraint_rate_scale(k)))
-      return stop(StepEnding::SingularConstraints, std::nullopt, "An event sets a state that violates a constraint.");
+      return stop(StepEnding::ImpossibleState, std::nullopt, "An event sets a state that violates a constraint.");
   for (std::size_t c = 0; c < point_->gap.size(); ++c)
     if (point_->gap[c] < -T(digits) * point_->gap_scale[c])
-      return stop(StepEnding::SingularConstraints, c, "an event sets a state that violates it.");
+      return stop(StepEnding::ImpossibleState, c, "an event sets a state that violates it.");
   return true;
 }
 
@@ -393,8 +393,7 @@ std::optional<T> Modes<T>::end_of_bounces(std::size_t c, const T& speed) {
   if (last.size() < 4) return std::nullopt;
   const T ratio = last[3].speed / last[2].speed, before = last[2].speed / last[1].speed;
   const T flight = last[3].t - last[2].t, slowest = T(0.999);  // flights of a spring do not shorten
-  const bool is_series =
-      ratio < slowest && abs(ratio - before) < T(1e-3) && flight < slowest * (last[2].t - last[1].t);
+  const bool is_series = ratio < slowest && abs(ratio - before) < T(1e-3) && flight < slowest * (last[2].t - last[1].t);
   const bool is_low =
       speed * flight <= T(1e6) * epsilon<T>() * widest_[problem_.contacts.gap_kind[c]] && speed < T(1e-6) * fastest_[c];
   if (!is_series || !is_low) return std::nullopt;
@@ -497,8 +496,10 @@ void Modes<T>::record_changes(const ExtendedMode& before, const ExtendedMode& af
     if (after.closed[c] && !before.closed[c]) record(ExtendedRoot::Kind::Made, c, ended_[c]);
     if (!after.closed[c] && before.closed[c]) record(ExtendedRoot::Kind::Lost, c);
   }
+  const auto closes = [&](std::size_t c) { return c < after.closed.size() && after.closed[c] && !before.closed[c]; };
   for (std::size_t f = 0; f < after.friction.size(); ++f)
-    if (after.friction[f] != before.friction[f] && after.friction[f] != Slides::None)
+    if (after.friction[f] != before.friction[f] && after.friction[f] != Slides::None &&
+        !(closes(f) && after.friction[f] != Slides::Stick))  // it was not held
       record(after.friction[f] == Slides::Stick ? ExtendedRoot::Kind::Stick : ExtendedRoot::Kind::Slip, f);
 }
 

@@ -187,7 +187,7 @@ TEST_CASE("what an event sets is refused where it breaks a constraint") {
       run(ModelText("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = y\nconstraint x^2 + y^2 = 1\n"
                     "start x = -0.6, y = -0.8\nevent off when x = 0.1 rising : set x = -0.11\n"),
           options);
-  CHECK(r.ending == Ending::SingularConstraints);
+  CHECK(r.ending == Ending::ImpossibleState);
 }
 
 TEST_CASE("models of the gallery meet in quad what they meet in double, at times within the errors of double") {

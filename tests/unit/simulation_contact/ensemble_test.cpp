@@ -224,7 +224,7 @@ TEST_CASE("what an event sets is checked against the constraints with the parame
   for (const TrajectoryEnding& e : found.endings) CHECK(e.ok());
   for (const ThroughModes& t : found.through) CHECK(t.count(Happening::Kind::Event) > 0);
   const ThroughModesResult off = together(text.substr(0, text.find("event")) + broken, members);
-  for (const TrajectoryEnding& e : off.endings) CHECK(e.ending == StepEnding::SingularConstraints);
+  for (const TrajectoryEnding& e : off.endings) CHECK(e.ending == StepEnding::ImpossibleState);
 }
 
 TEST_CASE("models of the gallery have the bits of their single runs in an ensemble") {

@@ -185,13 +185,13 @@ TEST_CASE("a set that breaks a contact or a constraint ends the run with the rea
       "dimensionless\ncoord x : number\nT = 1/2 x'^2\ncontact x >= 0 name wall\n"
       "event bad when x = 2 : set x = -1\nstart x = 1, x' = 1\n");
   const auto r = run(m, 5);
-  CHECK(r.ending == Ending::SingularConstraints);
+  CHECK(r.ending == Ending::ImpossibleState);
   CHECK(r.reason.find("wall") != std::string::npos);
   ModelText c(
       "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x = y name tie\n"
       "event bad when x = 2 : set x = 5\nstart x = 1, y = 1, x' = 1, y' = 1\n");
   const auto s = run(c, 5);
-  CHECK(s.ending == Ending::SingularConstraints);
+  CHECK(s.ending == Ending::ImpossibleState);
   CHECK(s.reason.find("tie") != std::string::npos);
 }
 
