@@ -262,10 +262,10 @@ constexpr std::array entries{
         "With rigid contacts and dry friction there may be no motion with finite forces, or several. In Painlevé's "
         "paradox friction turns the response of a contact to its own force around: more force makes it close faster. "
         "A stiff spring in place of that contact, or less friction, has a motion. Contacts that are hit at once may "
-        "have no impulses that keep all of them from closing: `impact sequential` lets them follow each other. Static friction below "
-        "kinetic friction neither holds nor slides. Bounces may become too small to be told apart: `restitution 0` "
-        "ends them. And backwards in time nothing follows from an impact or a stop: begin behind it. The run keeps "
-        "what came before.",
+        "have no impulses that keep all of them from closing: `impact sequential` lets them follow each other. Static "
+        "friction below kinetic friction neither holds nor slides. Bounces may become too small to be told apart: "
+        "`restitution 0` ends them. And backwards in time nothing follows from an impact or a stop: begin behind it. "
+        "The run keeps what came before.",
         "# maup simulate\ncoord x, z : length, θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
         "body rod mass m inertia m l^2/12 at (x, z) rotation angle θ\ngravity (0, -g)\n"
         "contact z - l/2 sin θ >= 0 friction 3 slip x' + l/2 sin θ θ' name floor\n"

@@ -212,7 +212,7 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
 }
 
 /// "The run ended at t = 2 s: the condition of `run until` was met"; a reason that a diagnostic tells is left to that.
-std::string end_text(const std::string& moment, const std::string& reason, const Diagnostics& diagnostics) {
+std::string ending_line(const std::string& moment, const std::string& reason, const Diagnostics& diagnostics) {
   const auto told = diagnostics.items();
   const bool is_told = std::any_of(told.begin(), told.end(), [&](const Diagnostic& d) { return d.reason == reason; });
   return is_told ? fmt::format("The run ended at {}.\n", moment)
@@ -260,7 +260,7 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
   if (!console.json()) {
     console.print(text_of(*result, system));
     if (result->ending != Ending::Finished)
-      console.say(end_text(system.moment(exact(result->final.t)), result->reason, study.diagnostics()));
+      console.say(ending_line(system.moment(exact(result->final.t)), result->reason, study.diagnostics()));
   }
   const bool files_written = !study.wrong();
   const ExitCode told = finish(console, study, document_of(*result, system, console.json()));
@@ -302,7 +302,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
   if (!console.json()) {
     console.print(extended_text(*result, system));
     if (result->ending != Ending::Finished)
-      console.say(end_text(system.moment(exact(result->reached)), result->reason, study.diagnostics()));
+      console.say(ending_line(system.moment(exact(result->reached)), result->reason, study.diagnostics()));
   }
   const bool files_written = !study.wrong();
   const ExitCode told = finish(console, study, extended_document(*result, digits, system));

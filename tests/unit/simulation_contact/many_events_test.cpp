@@ -24,24 +24,24 @@ const std::string turn_round = "set x' = -x'";
 }  // namespace
 
 TEST_CASE("recorded events within one long step end the run when more come than are followed") {
-  for (const std::string rate : {"1e7", "1e9", "1e12"}) {
+  for (const std::string rate : {"1e7", "1e12"}) {
     CAPTURE(rate);
     ModelText m(clock_with("sin(" + rate + " t) = 0", "record"));
     const auto r = run(m, 100);
     CHECK(r.ending == Ending::Unending);
     CHECK(r.reason.find("1000000 are followed at most") != std::string::npos);
-    CHECK(r.happenings.size() < 30'000);
+    CHECK(r.happenings.size() < 10'000);
     CHECK(r.final.q[0] == doctest::Approx(r.final.t).epsilon(1e-14));
   }
 }
 
 TEST_CASE("as many events as are followed are no reason, and none is left out where a step ends between them") {
   const double pi = std::acos(-1.0);
-  const auto r = run_text(clock_with("sin(1e5 t) = 0", "record"), pi * 1.000005);
-  REQUIRE(count(r, Happening::Kind::Event) == 100'001);  // with the one at t = 0
+  const auto r = run_text(clock_with("sin(1e4 t) = 0", "record"), pi * 1.00005);
+  REQUIRE(count(r, Happening::Kind::Event) == 10'001);  // with the one at t = 0
   double off = 0;
   for (std::size_t k = 0; k < r.happenings.size(); ++k)
-    off = std::max(off, std::abs(r.happenings[k].t - static_cast<double>(k) * pi * 1e-5));
+    off = std::max(off, std::abs(r.happenings[k].t - static_cast<double>(k) * pi * 1e-4));
   CHECK(off < 1e-14);
 }
 
@@ -55,7 +55,7 @@ TEST_CASE("events that become ever denser end the run soon, whatever they do") {
     CHECK(r.final.t < 1);
   }
   // A rate that grows, and comes to no more than are followed.
-  CHECK(run_text(clock_with("sin(3e4 t^2) = 0", "record"), 2).happenings.size() == 38'198);
+  CHECK(run_text(clock_with("sin(5e3 t^2) = 0", "record"), 2).happenings.size() == 6'367);
 }
 
 TEST_CASE("a run that may be stopped before its time is not judged by what would come after") {
