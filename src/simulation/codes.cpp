@@ -258,13 +258,14 @@ constexpr std::array entries{
         "# maup simulate\ncoord z : length\nparam m = 1 kg, g = 9.81 m/s^2\nT = 1/2 m z'^2\nV = m g z\n"
         "contact z >= 0 restitution 0.5 name floor\nstart z = 1 m\nrun 5 s\n"},
     CodeEntry{
-        "W0739", "no motion of contacts and friction goes on",
+        "W0739", "no motion goes on",
         "With rigid contacts and dry friction there may be no motion with finite forces, or several. In Painlevé's "
         "paradox friction turns the response of a contact to its own force around: more force makes it close faster. "
         "A stiff spring in place of that contact, or less friction, has a motion. Contacts that are hit at once may "
         "have no impulses that keep all of them from closing: `impact sequential` lets them follow each other. Static "
         "friction below kinetic friction neither holds nor slides. Bounces may become too small to be told apart: "
         "`restitution 0` ends them. And backwards in time nothing follows from an impact or a stop: begin behind it. "
+        "A force that begins without all of its derivatives, as √t, begins no motion that is followed through events. "
         "The run keeps what came before.",
         "# maup simulate\ncoord x, z : length, θ : angle\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
         "body rod mass m inertia m l^2/12 at (x, z) rotation angle θ\ngravity (0, -g)\n"

@@ -88,10 +88,8 @@ void tell_ending(Ending ending, const std::string& reason, std::optional<Span> p
     diagnostics.warning("W0738", place, "the run ended: events without end, or more of them than are followed", reason,
                         "Write an event that comes less often, end the run before, or stop it with an event.");
   else if (ending == Ending::Paradox)
-    diagnostics.warning(
-        "W0739", place, "the run ended: no motion of contacts and friction goes on here", reason,
-        "`maup explain W0739` says of each such end what helps: another coefficient of friction, a stiff "
-        "spring in place of a rigid contact, `impact sequential`.");
+    diagnostics.warning("W0739", place, "the run ended: no motion goes on here", reason,
+                        "`maup explain W0739` says what helps in each such case.");
 }
 
 bool goes_through_modes(const Model& model) { return model.system.has_modes() || !model.experiment.events.empty(); }
