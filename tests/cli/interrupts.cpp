@@ -129,7 +129,7 @@ TEST_CASE("a hundred thousand events do not outlast the time that an interrupt l
       "walls.lag",
       "param m = 1 kg, L = 10 m\ncoord x : length\nT = 1/2 m x'^2\ncontact x >= 0 restitution 1 name left\n"
       "contact x <= L restitution 1 name right\nstart x = 1 m, x' = 3 m/s\nrun 3e6 s\n");
-  const Outcome text = interrupted({"simulate", model, "--no-errors"}, SIGINT, 5);
+  const Outcome text = interrupted({"simulate", model, "--no-errors"}, SIGINT, 2);
   check_end(text);
   CHECK(contains(text.out, "x' = "));
 }
