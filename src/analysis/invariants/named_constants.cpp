@@ -107,6 +107,7 @@ class Constants {
     p.name = to_plain(constant, ReadingOrder{});
     p.symbol = system_.context->symbol(p.name, Role::Parameter);
     p.si_value = evaluate(constant, parameter_bindings(system_));
+    p.value = system_.context->number(Rational::from_double(p.si_value));  // to rounding: no formula is made of it
     p.used = true;
     places_.emplace(constant, p.symbol);
     meaning_.emplace(p.symbol, constant);
