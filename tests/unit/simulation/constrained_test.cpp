@@ -306,19 +306,3 @@ TEST_CASE("the stiff method takes over where stability limits the steps, and say
   taylor.maximum_steps = 3000;
   CHECK(run(m, 1, taylor).ending == Ending::TooManySteps);
 }
-
-TEST_CASE("a degenerate start that is moved leaves what no constraint asks of, and comes to zero itself") {
-  for (const char* start : {"x = 1", "x = 1, x' = 1", "x = 1e-7, y = 3", "x = -2, y' = 0.5"}) {
-    CAPTURE(start);
-    const ModelText m(std::string("dimensionless\ncoord x, y : number\nL = 1/2 (x' + y')^2 - 1/2 x^2\nstart ") + start +
-                      "\n");
-    Diagnostics diagnostics;
-    const auto found = consistent_start(m.model, m.equations, diagnostics);
-    REQUIRE(found);
-    CHECK_FALSE(found->searched);
-    CHECK(found->state.q[0] == 0);
-    CHECK(found->state.v[0] == 0);
-    CHECK(found->state.q[1] == (std::string(start).find("y = 3") != std::string::npos ? 3 : 0));
-    CHECK(found->state.v[1] == (std::string(start).find("y' = ") != std::string::npos ? 0.5 : 0));
-  }
-}

@@ -6,6 +6,7 @@
 #include <maupertuis/ensemble.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/print.hpp>
+#include <maupertuis/simulation.hpp>
 
 #include <atomic>
 #include <cmath>
@@ -258,4 +259,20 @@ TEST_CASE("kernels and flows of a degenerate Lagrangian are those of the equatio
   const std::vector<double> still{0, 0};
   start.v = still;  // y' = x is a constraint here
   CHECK(advance_ensemble(motion.kernel, start).endings[0].ending == StepEnding::Refused);
+}
+
+TEST_CASE("a degenerate start that is moved leaves what no constraint asks of, and comes to zero itself") {
+  for (const char* start : {"x = 1", "x = 1, x' = 1", "x = 1e-7, y = 3", "x = -2, y' = 0.5"}) {
+    Study study(SourceText("d.lag", std::string("dimensionless\ncoord x, y : number\n"
+                                                "L = 1/2 (x' + y')^2 - 1/2 x^2\nstart ") +
+                                        start + "\n"));
+    REQUIRE(study.equations());
+    const auto found = consistent_start(*study.model(), *study.equations(), study.diagnostics());
+    REQUIRE(found);
+    CHECK_FALSE(found->searched);
+    CHECK(found->state.q[0] == 0);
+    CHECK(found->state.v[0] == 0);
+    CHECK(found->state.q[1] == (std::string(start).find("y = 3") != std::string::npos ? 3 : 0));
+    CHECK(found->state.v[1] == (std::string(start).find("y' = ") != std::string::npos ? 0.5 : 0));
+  }
 }
