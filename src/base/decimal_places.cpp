@@ -1,4 +1,4 @@
-#include "base/decimal_places.hpp"
+#include <maupertuis/decimal_places.hpp>
 
 #include <cstdint>
 

@@ -93,7 +93,7 @@ bool has_given_slope(const FieldEquations& equations, const NaturalCondition& n,
   });
 }
 
-bool has_bodies(const FieldEquations& equations, const NaturalCondition& n, bool last) {
+bool is_held_by_bodies(const FieldEquations& equations, const NaturalCondition& n, bool last) {
   return n.along < 2 &&
          std::any_of(equations.interfaces.begin(), equations.interfaces.end(), [&](const InterfaceCondition& c) {
            return c.end == side_of(n.along, last) && c.field == n.field && c.moment == n.moment;
@@ -124,7 +124,9 @@ std::vector<NaturalAtEnds> natural_at_ends(const FieldEquations& equations) {
   for (std::size_t i = 0; i < equations.natural.size(); ++i) {
     const NaturalCondition& n = equations.natural[i];
     const bool has_ends = !s.periodic(n.along) && s.space[n.along].from;
-    const auto holds = [&](bool last) { return !is_held(equations, n, last) && !has_bodies(equations, n, last); };
+    const auto holds = [&](bool last) {
+      return !is_held(equations, n, last) && !is_held_by_bodies(equations, n, last);
+    };
     const bool first = has_ends && holds(false), last = has_ends && holds(true);
     const Expr at_first = with_forces(equations, n, false), at_last = with_forces(equations, n, true);
     if (first == last && (!first || at_first == at_last))

@@ -1,10 +1,10 @@
 #include "symbolic/print/layout.hpp"
-#include "base/decimal_places.hpp"
 
 #include "symbolic/expression/kind_table.hpp"
 #include "symbolic/print/reading_rank.hpp"
 #include "symbolic/print/symbol_name.hpp"
 
+#include <maupertuis/decimal_places.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/kinds.hpp>
 #include <maupertuis/require.hpp>

@@ -1,5 +1,6 @@
 #include "symbolic/transform/reading_cost.hpp"
-#include "base/decimal_places.hpp"
+
+#include <maupertuis/decimal_places.hpp>
 
 #include <algorithm>
 
