@@ -261,8 +261,8 @@ void add_action(CommandLine& line) {
                    "Along the model's own motion: what happens without a path in the model");
   command.add_flag("--periodic", options->periodic, "The periodic motion next to the model's start, as a closed path");
   command.add_option("--period", options->period, "Of it, or near it")->type_name("TIME");
-  command.add_option("--plot", options->plot, "S of neighbouring paths: .svg")->type_name("FILE");
-  command.add_option("--plot-paths", options->plot_paths, "The paths: .svg")->type_name("FILE");
+  command.add_option("--plot", options->plot, "S of neighbouring paths: .svg, .png or .pdf")->type_name("FILE");
+  command.add_option("--plot-paths", options->plot_paths, "The paths: .svg, .png or .pdf")->type_name("FILE");
   command.add_option("-o,--output", options->output, "The paths: .csv, .npy or .json")->type_name("FILE");
 }
 

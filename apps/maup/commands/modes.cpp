@@ -419,8 +419,10 @@ void add_modes(CommandLine& line) {
                   "A locus over values of one parameter, e.g. \"Ω = 0 .. 12 rad/s steps 121\"")
       ->not_empty()
       ->type_name("SWEEP");
-  command.add_option("--plot", options->plot, "The bifurcation diagram of the sweep: .svg")->type_name("FILE");
-  command.add_option("--roots", options->roots, "The eigenvalues of the sweep in the complex plane: .svg")
+  command.add_option("--plot", options->plot, "The bifurcation diagram of the sweep: .svg, .png or .pdf")
+      ->type_name("FILE");
+  command
+      .add_option("--roots", options->roots, "The eigenvalues of the sweep in the complex plane: .svg, .png or .pdf")
       ->type_name("FILE");
   command.add_option("--csv", options->csv, "The locus as numbers: .csv")->type_name("FILE");
   command.add_flag("--dispersion", options->dispersion, "The dispersion relation of a field, in symbols");

@@ -104,7 +104,7 @@ void add_orbits(CommandLine& line) {
       ->type_name("TIME");
   command.add_option("-o,--output", options->output, "The points, or the averages: .csv, .npy or .json")
       ->type_name("FILE");
-  command.add_option("--plot", options->plot, "Their picture: .svg")->type_name("FILE");
+  command.add_option("--plot", options->plot, "Their picture: .svg, .png or .pdf")->type_name("FILE");
 }
 
 }  // namespace maupertuis::app

@@ -399,7 +399,7 @@ void add_simulate(CommandLine& line) {
       ->one_of({"double", "quad", "100"})
       ->type_name("DIGITS");
   command.add_option("-o,--output", options->output, "The trajectory: .csv, .npy or .json")->type_name("FILE");
-  command.add_option("--plot", options->plot, "Its time series as a picture: .svg")->type_name("FILE");
+  command.add_option("--plot", options->plot, "Its time series as a picture: .svg, .png or .pdf")->type_name("FILE");
   command
       .add_option(
           "--columns", options->columns,
