@@ -66,7 +66,10 @@ void RoundedNumbers::take_start(const Model& model, const RunPlan& plan) {
   for (const StartValue& start : model.experiment.start) {
     StartNumber& number = (start.order == 0 ? q_ : v_)[start.coordinate];
     const Expr formula = in_terms_of_motion(system, {&start.value, 1}).front();
-    if (moved && rounded_value(formula, bindings) != number.value) continue;  // brought onto the constraints
+    if (rounded_value(formula, bindings) != number.value) {  // brought onto the constraints
+      number.rounded = true, number.given = false;
+      continue;
+    }
     number.given = true;
     number.rounded = is_rounded(substitute(formula, values), number.value);
     if (number.rounded && !moved) number.formula = formula;
