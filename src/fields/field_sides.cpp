@@ -93,23 +93,15 @@ bool has_given_slope(const FieldEquations& equations, const NaturalCondition& n,
   });
 }
 
-bool is_held_by_bodies(const FieldEquations& equations, const NaturalCondition& n, bool last) {
-  return n.along < 2 &&
-         std::any_of(equations.interfaces.begin(), equations.interfaces.end(), [&](const InterfaceCondition& c) {
-           return c.end == side_of(n.along, last) && c.field == n.field && c.moment == n.moment;
-         });
-}
-
+/// With the forces there, written or by a slope that is given.
 Expr with_forces(const FieldEquations& equations, const NaturalCondition& n, bool last) {
-  Expr out = n.value;
-  if (has_given_slope(equations, n, last)) {
-    const Expr given = as_given(equations.system(), n.value, side_of(n.along, last));
-    if (!vanishes_identically(given)) out = out - given;
-  }
-  for (const EndForce& f : equations.system().end_forces)
-    if (n.along < 2 && f.side == side_of(n.along, last) && f.jet.field == n.field && (f.jet.order() == 1) == n.moment)
-      out = last ? out + f.value : out - f.value;
-  return out;
+  if (n.along > 1) return n.value;
+  const FieldSystem& s = equations.system();
+  const Side side = side_of(n.along, last);
+  Expr out = n.value + force_at(s, n, side);
+  if (!has_given_slope(equations, n, last)) return out;
+  const Expr given = as_given(s, n.value, side);
+  return vanishes_identically(given) ? out : out - given;
 }
 
 }  // namespace
@@ -125,7 +117,8 @@ std::vector<NaturalAtEnds> natural_at_ends(const FieldEquations& equations) {
     const NaturalCondition& n = equations.natural[i];
     const bool has_ends = !s.periodic(n.along) && s.space[n.along].from;
     const auto holds = [&](bool last) {
-      return !is_held(equations, n, last) && !is_held_by_bodies(equations, n, last);
+      const bool has_bodies = n.along < 2 && is_held_by_bodies(equations, n, side_of(n.along, last));
+      return !has_bodies && !is_held(equations, n, last);
     };
     const bool first = has_ends && holds(false), last = has_ends && holds(true);
     const Expr at_first = with_forces(equations, n, false), at_last = with_forces(equations, n, true);
@@ -148,6 +141,21 @@ bool is_given(const FieldSystem& s, const NaturalCondition& n, Side side) {
   return std::any_of(s.boundary.begin(), s.boundary.end(), [&](const BoundaryCondition& b) {
     return b.side == side && b.jet.field == n.field && (b.jet.order() == 1 || !n.moment);
   });
+}
+
+bool is_held_by_bodies(const FieldEquations& equations, const NaturalCondition& n, Side side) {
+  return std::any_of(equations.interfaces.begin(), equations.interfaces.end(), [&](const InterfaceCondition& c) {
+    return c.end == side && c.field == n.field && c.moment == n.moment;
+  });
+}
+
+Expr force_at(const FieldSystem& s, const NaturalCondition& n, Side side) {
+  const bool is_last = side == Side::Right || side == Side::Top;
+  Expr out = s.context->number(0);
+  for (const EndForce& f : s.end_forces)
+    if (f.side == side && f.jet.field == n.field && (f.jet.order() == 1) == n.moment)
+      out = is_last ? out + f.value : out - f.value;
+  return out;
 }
 
 bool refuse_too_many_conditions(const FieldEquations& equations, Diagnostics& diagnostics) {

@@ -51,12 +51,6 @@ int order_of(const FieldEquations& equations, const NaturalCondition& n) {
   return n.moment ? 2 : bends(equations, n.field) ? 3 : 1;
 }
 
-bool has_bodies(const FieldEquations& equations, const NaturalCondition& n, Side side) {
-  return std::any_of(equations.interfaces.begin(), equations.interfaces.end(), [&](const InterfaceCondition& i) {
-    return i.end == side && i.field == n.field && i.moment == n.moment;
-  });
-}
-
 void add_sides(const FieldEquations& equations, std::vector<Condition>& out) {
   const FieldSystem& s = equations.system();
   for (const BoundaryCondition& b : s.boundary)
@@ -64,12 +58,10 @@ void add_sides(const FieldEquations& equations, std::vector<Condition>& out) {
       out.push_back(at_side(equations, b.side, b.jet.field, s.jet_symbol(b.jet), s.expanded(b.value), b.jet.order()));
   for (const NaturalCondition& n : equations.natural)
     for (const Side side : sides_across(n.along)) {
-      if (!moves(equations, n.field) || s.periodic(n.along) || is_given(s, n, side) || has_bodies(equations, n, side))
+      if (!moves(equations, n.field) || s.periodic(n.along) || is_given(s, n, side) ||
+          is_held_by_bodies(equations, n, side))
         continue;
-      Expr force = s.context->number(0);  // p + F = 0 on the right, −p + F = 0 on the left
-      for (const EndForce& f : s.end_forces)
-        if (f.side == side && f.jet.field == n.field && (f.jet.order() == 1) == n.moment)
-          force = side == Side::Left ? force + s.expanded(f.value) : force - s.expanded(f.value);
+      const Expr force = -s.expanded(force_at(s, n, side));
       out.push_back(at_side(equations, side, n.field, n.value, force, order_of(equations, n)));
     }
 }
